@@ -1,0 +1,16 @@
+# The OpenCV modules that are asked for, as targets opencv_NAME. Debian's own config file comes only with all of OpenCV and the
+# windowing and 3D libraries below it; this project needs a few modules.
+find_path(OpenCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4)
+foreach(component IN LISTS OpenCV_FIND_COMPONENTS)
+  find_library(OpenCV_${component} opencv_${component})
+  if(OpenCV_INCLUDE_DIR AND OpenCV_${component})
+    set(OpenCV_${component}_FOUND TRUE)
+    if(NOT TARGET opencv_${component})
+      add_library(opencv_${component} INTERFACE IMPORTED)
+      target_include_directories(opencv_${component} SYSTEM INTERFACE ${OpenCV_INCLUDE_DIR})
+      target_link_libraries(opencv_${component} INTERFACE ${OpenCV_${component}})
+    endif()
+  endif()
+endforeach()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(OpenCV REQUIRED_VARS OpenCV_INCLUDE_DIR HANDLE_COMPONENTS)

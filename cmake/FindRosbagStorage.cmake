@@ -1,0 +1,17 @@
+# ROS 1 bag storage as Debian packages it. Its own config file leaves out libraries that its headers need
+# (rostime, roscpp_serialization, cpp_common), so they are named here.
+find_path(RosbagStorage_INCLUDE_DIR rosbag/bag.h)
+set(libraries rosbag_storage roscpp_serialization rostime cpp_common roslz4 console_bridge boost_system bz2)
+set(found_libraries "")
+foreach(library IN LISTS libraries)
+  find_library(RosbagStorage_${library} ${library})
+  list(APPEND found_libraries ${RosbagStorage_${library}})
+  list(APPEND required RosbagStorage_${library})
+endforeach()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(RosbagStorage REQUIRED_VARS RosbagStorage_INCLUDE_DIR ${required})
+if(RosbagStorage_FOUND AND NOT TARGET RosbagStorage::RosbagStorage)
+  add_library(RosbagStorage::RosbagStorage INTERFACE IMPORTED)
+  target_include_directories(RosbagStorage::RosbagStorage SYSTEM INTERFACE ${RosbagStorage_INCLUDE_DIR})
+  target_link_libraries(RosbagStorage::RosbagStorage INTERFACE ${found_libraries})
+endif()

@@ -1,0 +1,28 @@
+# One precompiled header for the house and one for its tests: Eigen and manif are slow to compile and in nearly every file.
+function(pllit_precompiled_header name)
+  file(WRITE ${CMAKE_BINARY_DIR}/${name}.cpp "")
+  add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/${name}.cpp)
+  target_link_libraries(${name} PRIVATE pllit_flags Eigen3::Eigen)
+  target_precompile_headers(${name} PRIVATE ${ARGN})
+endfunction()
+
+# pllit_module(NAME SOURCES a.cpp ... DEPENDS base ... LINK lib ...)
+#   one folder of the house: the static library pllit_NAME with the alias pllit::NAME
+function(pllit_module name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
+  add_library(pllit_${name} STATIC ${arg_SOURCES})
+  add_library(pllit::${name} ALIAS pllit_${name})
+  list(TRANSFORM arg_DEPENDS PREPEND pllit::)
+  target_link_libraries(pllit_${name} PUBLIC pllit_flags Eigen3::Eigen ${arg_DEPENDS} ${arg_LINK})
+  target_precompile_headers(pllit_${name} REUSE_FROM pllit_pch)
+endfunction()
+
+# pllit_test(NAME SOURCES ... LINK ... [LABELS slow])   one GoogleTest executable, each test its own CTest entry
+function(pllit_test name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LINK} pllit_flags Eigen3::Eigen GTest::gtest GTest::gmock GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+  target_precompile_headers(${name} REUSE_FROM pllit_test_pch)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 400 LABELS "${arg_LABELS}")
+endfunction()
