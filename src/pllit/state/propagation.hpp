@@ -1,0 +1,63 @@
+// Forward propagation with the IMU: the paper's eqs. (2)-(6).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pllit/sensor/measurements.hpp"
+#include "pllit/sensor/rig.hpp"
+#include "pllit/state/nav_state.hpp"
+
+namespace pllit {
+
+using Matrix18x12 = Eigen::Matrix<double, error_index::size, 12>;
+
+/// One step of constant rate and specific force: new state and its Jacobians to the old error and to the noise
+/// (n_g, n_a, n_bg, n_ba), derived from eq. (3), checked against central differences in the tests.
+struct ImuStep {
+  NavState state;
+  Matrix18 J_next_error;
+  Matrix18x12 J_next_noise;
+};
+ImuStep imu_step(const NavState& state, const Vector3d& gyro_rps, const Vector3d& accel_mps2, Duration dt);
+
+/// Pose, velocity and the motion that holds from this node to the next one.
+struct PathNode {
+  Time time;
+  SO3 R_W_I;
+  Vector3d p_W, v_W;
+  Vector3d omega_I;  ///< rad/s, bias removed
+  Vector3d accel_W;  ///< m/s2, gravity removed
+};
+
+/// The motion during one packet: nodes with ascending times, the last at the packet's end. Never empty.
+struct MotionPath {
+  std::vector<PathNode> nodes;
+
+  /// Pose at a time: the motion of the latest node not after it; before the first node that node's motion, backwards.
+  SE3 pose_at(Time time) const;
+};
+/// Where a node's motion leads after dt (which may be negative).
+SE3 extrapolate(const PathNode& node, double dt_s);
+
+struct Propagation {
+  MotionPath path;
+  Estimate predicted;     ///< at `until`
+  Duration longest_gap;   ///< longest stretch without an IMU sample
+};
+
+/// What to assume of the motion where IMU samples are missing for longer than `max_gap`: that the rig goes on as it was,
+/// to within these random accelerations and rates.
+struct GapModel {
+  Duration max_gap = std::chrono::milliseconds(250);
+  double accel_sigma_mps2 = 3.0;
+  double rate_sigma_rps = 0.5;
+};
+
+/// Propagates `from` to `until`. `imu` ascends in time, in SI units; the last sample at or before from.time and the first one
+/// at or after `until` should be among them (values between samples are interpolated linearly, and held where a side is
+/// missing). Noise densities are discretised by the length of each step, so any sample rate serves.
+Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time until, const ImuNoise& noise,
+                      const GapModel& gaps = {});
+
+}  // namespace pllit

@@ -1,0 +1,22 @@
+// Plain tables that the pipeline hands to writers and scores, so that neither needs to know a map or a filter.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace pllit {
+
+/// One named number per point; `values` is as long as the table it belongs to.
+struct ScalarField {
+  std::string name;
+  std::vector<float> values;
+};
+
+/// Points in one frame (metres) with any number of scalar fields.
+struct PointTable {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<ScalarField> fields;
+};
+
+}  // namespace pllit
