@@ -1,0 +1,37 @@
+// Fewer points, evenly spread.
+#pragma once
+
+#include "pllit/lidar/deskew.hpp"
+#include "pllit/lidar/voxel_table.hpp"
+
+namespace pllit {
+
+struct ScanConfig {
+  double insert_voxels = 0.5;  ///< spacing of the points that enter the map, in map voxels
+  double match_voxels = 1.25;  ///< spacing of the points that are matched, in map voxels
+  int max_matched = 2500;      ///< at most so many are matched
+};
+
+/// Keeps the first point of each voxel of the given size.
+PointCloud downsample(const PointCloud& cloud, double voxel_m);
+
+/// Keeps at most `count` points, evenly by index.
+PointCloud thin(PointCloud cloud, std::size_t count);
+
+/// Remembers which voxels of the world have been seen, within a radius, and tells the points that fall into new ones: the
+/// map that is written to disk holds each place once, in bounded memory.
+class FreshVoxels {
+ public:
+  FreshVoxels(double voxel_m, double radius_m) : voxel_m_(voxel_m), radius_m_(radius_m) {}
+
+  /// Indices of the points that are the first in their voxel. Voxels farther than the radius from `centre_W` are forgotten.
+  std::vector<std::size_t> select(const std::vector<Vector3f>& points_W, const Vector3d& centre_W);
+
+ private:
+  struct Seen {};
+  double voxel_m_, radius_m_;
+  VoxelTable<Seen> seen_;
+  Vector3d last_centre_W_ = Vector3d::Zero();
+};
+
+}  // namespace pllit
