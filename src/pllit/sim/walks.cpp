@@ -1,0 +1,134 @@
+#include "pllit/sim/walks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "pllit/sim/random.hpp"
+
+namespace pllit {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSpacing_s = 0.1;  // of the controls: steps at 2 Hz survive, what is faster is smoothed away
+constexpr double kRamp_s = 1.5;     // from rest to full motion
+constexpr Time kStart = time_from_parts(1'700'000'000, 0);  // any real date, so that lost digits of a time would show
+
+/// 0 until zero, 1 after one, with two continuous derivatives.
+double ramp(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * x * (10.0 + x * (6.0 * x - 15.0));
+}
+
+struct Wave {
+  double amplitude, frequency_hz, phase;
+  double at(double t_s) const { return amplitude * std::sin(2.0 * kPi * frequency_hz * t_s + phase); }
+};
+
+Wave random_wave(double amplitude, double frequency_hz, Random& random) {
+  const double scale = random.uniform(0.9, 1.1);
+  return {amplitude, frequency_hz * scale, random.uniform(0.0, 2.0 * kPi)};
+}
+
+struct LanePoint {
+  Eigen::Vector2d position;
+  double heading_rad;
+};
+
+Eigen::Vector2d direction(double heading_rad) { return {std::cos(heading_rad), std::sin(heading_rad)}; }
+Eigen::Vector2d left_of(double heading_rad) { return {-std::sin(heading_rad), std::cos(heading_rad)}; }
+
+double perimeter_m(const Lane& lane) {
+  return 2.0 * (lane.straight_x_m + lane.straight_y_m + kPi * lane.corner_radius_m);
+}
+
+/// The point `s` metres along the centre line, counter-clockwise from the middle of the side at negative y.
+LanePoint lane_point(const Lane& lane, double s) {
+  LanePoint at{{0.0, -0.5 * lane.straight_y_m - lane.corner_radius_m}, 0.0};
+  s = std::fmod(s, perimeter_m(lane));
+  const double half_x_m = 0.5 * lane.straight_x_m;
+  for (const double straight_m : {half_x_m, lane.straight_y_m, lane.straight_x_m, lane.straight_y_m, half_x_m}) {
+    at.position += std::min(s, straight_m) * direction(at.heading_rad);
+    s -= straight_m;
+    if (s <= 0.0) return at;
+    const double turn = std::min(s / lane.corner_radius_m, 0.5 * kPi);
+    at.position += lane.corner_radius_m * (left_of(at.heading_rad) - left_of(at.heading_rad + turn));
+    at.heading_rad += turn;
+    s -= turn * lane.corner_radius_m;
+  }
+  return at;
+}
+
+Vector3d above_ground(const Lane& lane, const Eigen::Vector2d& position, double above_m) {
+  return {position.x(), position.y(), lane.slope.dot(position) + above_m};
+}
+
+SO3 rotation_from_angles(double yaw, double pitch, double roll) {
+  return exp_so3({0.0, 0.0, yaw}) * exp_so3({0.0, pitch, 0.0}) * exp_so3({roll, 0.0, 0.0});
+}
+
+double random_start_m(const Lane& lane, Random& random) {
+  const double share = random.uniform();
+  return std::isinf(perimeter_m(lane)) ? 0.0 : share * perimeter_m(lane);
+}
+
+/// Motion through pose_at(t, strength), t in seconds since the start and strength the ramp from 0 (rest) to 1.
+template <class PoseAt>
+Motion ramped_motion(const MotionConfig& config, const PoseAt& pose_at) {
+  // A control acts for three spacings to either side, so what is to rest until rest_s starts that much later.
+  const double moving_from_s = config.rest_s + 3.0 * kSpacing_s;
+  const int segments = static_cast<int>(std::ceil(config.duration_s / kSpacing_s - 1e-9));
+  std::vector<SE3> controls;
+  for (int i = 0; i < segments + 5; ++i) {
+    const double t_s = (i - 2) * kSpacing_s;
+    controls.push_back(pose_at(t_s, ramp((t_s - moving_from_s) / kRamp_s)));
+  }
+  return Motion(kStart, from_seconds(kSpacing_s), controls);
+}
+
+}  // namespace
+
+Motion walk_along(const Lane& lane, const MotionConfig& config) {
+  Random random(config.seed, 1);
+  const bool clockwise = random.uniform() < 0.5;
+  const double mirror = clockwise ? -1.0 : 1.0;
+  double s = random_start_m(lane, random);
+  const double wiggle_length_m = random.uniform(5.0, 8.0);
+  const Wave aside{0.2, 1.0 / wiggle_length_m, random.uniform(0.0, 2.0 * kPi)};  // over metres, not seconds
+  const Wave pace = random_wave(0.15, 0.11, random);
+  const Wave glance = random_wave(0.35, 0.07, random), look_up = random_wave(0.06, 0.13, random);
+  const Wave sway = random_wave(0.045, 0.9, random), nod = random_wave(0.035, 1.8, random);
+  const Wave bob = random_wave(0.025, 1.8, random);
+  const double held_roll = 0.03 * random.gaussian();
+  const double held_pitch = 0.03 * random.gaussian();
+
+  return ramped_motion(config, [&](double t_s, double strength) {
+    s += strength * config.speed_mps * (1.0 + pace.at(t_s)) * kSpacing_s;
+    const LanePoint on_lane = lane_point(lane, s);
+    Eigen::Vector2d position = on_lane.position + aside.at(s) * left_of(on_lane.heading_rad);
+    position.y() *= mirror;
+    const double yaw = mirror * on_lane.heading_rad + strength * glance.at(t_s);
+    const double pitch = held_pitch + strength * (nod.at(t_s) + look_up.at(t_s));
+    const double roll = held_roll + strength * sway.at(t_s);
+    return pose_from(rotation_from_angles(yaw, pitch, roll),
+                     above_ground(lane, position, lane.height_m + strength * bob.at(t_s)));
+  });
+}
+
+Motion fast_shake(const Lane& lane, const MotionConfig& config) {
+  Random random(config.seed, 2);
+  const LanePoint stand = lane_point(lane, random_start_m(lane, random));
+  const Wave yaw = random_wave(0.66, 0.5, random), pitch = random_wave(0.28, 0.7, random);
+  const Wave roll = random_wave(0.22, 0.9, random);
+  const Wave x = random_wave(0.12, 0.6, random), y = random_wave(0.12, 0.8, random), z = random_wave(0.1, 0.7, random);
+
+  return ramped_motion(config, [&](double t_s, double strength) {
+    const Eigen::Vector2d position = stand.position + strength * Eigen::Vector2d(x.at(t_s), y.at(t_s));
+    return pose_from(rotation_from_angles(stand.heading_rad + strength * yaw.at(t_s), strength * pitch.at(t_s),
+                                          strength * roll.at(t_s)),
+                     above_ground(lane, position, lane.height_m + strength * z.at(t_s)));
+  });
+}
+
+}  // namespace pllit

@@ -1,0 +1,88 @@
+#include "pllit/sim/config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace pllit {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string error_of(std::string_view source) {
+  const auto config = parse_sim_config(source);
+  if (config) return "no error";
+  EXPECT_EQ(config.error().kind, Error::Kind::input);
+  return config.error().message;
+}
+
+TEST(SimulationText, HasDefaultsForEverythingButTheScene) {
+  const auto config = parse_sim_config("sim:corridor");
+  ASSERT_TRUE(config);
+  EXPECT_EQ(config->scene, SimConfig::Place::corridor);
+  EXPECT_EQ(config->seed, 1u);
+  EXPECT_EQ(config->duration_s, 30.0);
+  EXPECT_FALSE(config->ideal);
+  EXPECT_FALSE(config->faults.imu_gap.contains(0.0));
+}
+
+TEST(SimulationText, SetsEveryKey) {
+  const auto config = parse_sim_config(
+      "sim:outdoor?seed=18446744073709551615&duration=12.5&imu_rate=400&speed=1.5&motion=shake&lidar=ring16&ideal=1"
+      "&accel_unit=g&imu_gap=3:3.5&lidar_gap=4:5&time_back=6:7&duplicates=7:8&imu_nan=8:8.1&late_scans=9:10"
+      "&swapped_imu=10:11");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->scene, SimConfig::Place::outdoor);
+  EXPECT_EQ(config->seed, 18446744073709551615u);
+  EXPECT_EQ(config->duration_s, 12.5);
+  EXPECT_EQ(config->imu_rate_hz, 400.0);
+  EXPECT_EQ(config->speed_mps, 1.5);
+  EXPECT_EQ(config->motion, SimConfig::Carried::shake);
+  EXPECT_EQ(config->lidar, SimConfig::Lidar::ring16);
+  EXPECT_TRUE(config->ideal);
+  EXPECT_TRUE(config->accel_in_g);
+  EXPECT_EQ(config->faults.imu_gap.from_s, 3.0);
+  EXPECT_EQ(config->faults.imu_gap.to_s, 3.5);
+  EXPECT_EQ(config->faults.lidar_gap.from_s, 4.0);
+  EXPECT_EQ(config->faults.time_back.from_s, 6.0);
+  EXPECT_EQ(config->faults.duplicates.from_s, 7.0);
+  EXPECT_EQ(config->faults.imu_nan.to_s, 8.1);
+  EXPECT_EQ(config->faults.late_scans.from_s, 9.0);
+  EXPECT_EQ(config->faults.swapped_imu.from_s, 10.0);
+}
+
+TEST(SimulationText, ListsTheScenesWhereOneIsUnknown) {
+  for (const auto* source : {"sim:rom", "sim:", "sim:?seed=1", "sim:Room"})
+    EXPECT_THAT(error_of(source), AllOf(HasSubstr(source), HasSubstr("room or corridor or outdoor")));
+}
+
+TEST(SimulationText, ListsTheKeysWhereOneIsUnknownOrRepeated) {
+  EXPECT_THAT(error_of("sim:room?sede=3"), AllOf(HasSubstr("\"sede\""), HasSubstr("seed, duration, imu_rate")));
+  EXPECT_THAT(error_of("sim:room?seed=3&seed=4"), AllOf(HasSubstr("\"seed\""), HasSubstr("twice")));
+}
+
+TEST(SimulationText, SaysWhatAWrongValueShouldBe) {
+  EXPECT_THAT(error_of("sim:room?duration=2"), HasSubstr("seconds from 3 to 36000"));
+  EXPECT_THAT(error_of("sim:room?duration=nan"), HasSubstr("seconds from 3 to 36000"));
+  EXPECT_THAT(error_of("sim:room?duration=30s"), HasSubstr("duration=30s"));
+  EXPECT_THAT(error_of("sim:room?imu_rate=2000"), HasSubstr("Hz from 10 to 1000"));
+  EXPECT_THAT(error_of("sim:room?speed="), HasSubstr("m/s from 0.1 to 3"));
+  EXPECT_THAT(error_of("sim:room?seed=-1"), HasSubstr("whole number"));
+  EXPECT_THAT(error_of("sim:room?seed=1.5"), HasSubstr("whole number"));
+  EXPECT_THAT(error_of("sim:room?lidar=xt32"), HasSubstr("ring32 or ring16"));
+  EXPECT_THAT(error_of("sim:room?accel_unit=G"), HasSubstr("mps2 or g"));
+  for (const auto* interval : {"5", "5:", ":5", "6:5", "5:5", "-1:5", "1:inf", "a:b", "1:2:3"})
+    EXPECT_THAT(error_of(std::string("sim:room?imu_gap=") + interval), HasSubstr("FROM:TO")) << interval;
+}
+
+TEST(SimulationText, RefusesWhatIsNotKeyEqualsValue) {
+  EXPECT_THAT(error_of("sim:room?seed"), HasSubstr("key=value"));
+  EXPECT_THAT(error_of("sim:room?=1"), HasSubstr("\"\" is unknown"));
+  EXPECT_THAT(error_of("sim:room?seed=1&"), HasSubstr("key=value"));
+  EXPECT_THAT(error_of("room"), HasSubstr("must start with sim:"));
+}
+
+}  // namespace
+}  // namespace pllit
