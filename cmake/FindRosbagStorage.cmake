@@ -1,6 +1,14 @@
 # ROS 1 bag storage as Debian packages it. Its own config file leaves out libraries that its headers need
-# (rostime, roscpp_serialization, cpp_common), so they are named here.
+# (rostime, roscpp_serialization, cpp_common), so they are named here. Its headers include pluginlib's, which Debian ships from
+# ROS 2, where each package has an include folder of its own.
 find_path(RosbagStorage_INCLUDE_DIR rosbag/bag.h)
+set(folders "")
+foreach(package pluginlib class_loader rcpputils rcutils ament_index_cpp)
+  find_path(RosbagStorage_${package}_INCLUDE_DIR ${package} PATH_SUFFIXES ${package} NO_CACHE)
+  if(RosbagStorage_${package}_INCLUDE_DIR)
+    list(APPEND folders ${RosbagStorage_${package}_INCLUDE_DIR})
+  endif()
+endforeach()
 set(libraries rosbag_storage roscpp_serialization rostime cpp_common roslz4 console_bridge boost_system bz2)
 set(found_libraries "")
 foreach(library IN LISTS libraries)
@@ -12,6 +20,6 @@ include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(RosbagStorage REQUIRED_VARS RosbagStorage_INCLUDE_DIR ${required})
 if(RosbagStorage_FOUND AND NOT TARGET RosbagStorage::RosbagStorage)
   add_library(RosbagStorage::RosbagStorage INTERFACE IMPORTED)
-  target_include_directories(RosbagStorage::RosbagStorage SYSTEM INTERFACE ${RosbagStorage_INCLUDE_DIR})
+  target_include_directories(RosbagStorage::RosbagStorage SYSTEM INTERFACE ${RosbagStorage_INCLUDE_DIR} ${folders})
   target_link_libraries(RosbagStorage::RosbagStorage INTERFACE ${found_libraries})
 endif()

@@ -97,7 +97,7 @@ TEST(StartUp, RefusesAnAccelerometerInNeitherUnit) {
   const auto start = start_up(at_rest(random, {.accel_scale = 0.4}), ImuNoise{}, {});
   ASSERT_FALSE(start.has_value());
   EXPECT_EQ(start.error().kind, Error::Kind::input);
-  EXPECT_THAT(start.error().message, testing::HasSubstr("rig.imu_unit"));
+  EXPECT_THAT(start.error().message, testing::HasSubstr("input.accel_unit"));
 }
 
 TEST(StartUp, DoesNotTakeABiasAlongGravityForAScaleError) {

@@ -54,8 +54,9 @@ std::optional<Vector2d> Camera::project(const Vector3d& p_C) const {
   } else {
     if (p_C.z() <= 0.0) return std::nullopt;
     const Vector2d undistorted = p_C.head<2>() / p_C.z();
-    if (radtan_slope(k, undistorted).determinant() <= 0.0) return std::nullopt;
     m = radtan(k, undistorted);
+    // Beyond its reach the polynomial turns back, or through the axis to the other side.
+    if (radtan_slope(k, undistorted).determinant() <= 0.0 || m.dot(undistorted) < 0.0) return std::nullopt;
   }
   return Vector2d(fx * m.x() + cx, fy * m.y() + cy);
 }

@@ -19,7 +19,7 @@ struct BagOptions {
   std::string image_topic{};
   bool with_images = true;
   std::optional<TimeUnit> point_time_unit{};  ///< nothing: found from the scans
-  bool scan_stamp_at_end = false;           ///< header stamps of scans are the end of the sweep
+  bool scan_stamp_at_end = false;             ///< header stamps of scans are the end of the sweep
 };
 
 /// The topics that were chosen.

@@ -149,13 +149,14 @@ Expected<std::vector<std::int64_t>> in_nanoseconds(const RawTimeColumn& column, 
   return times_ns;
 }
 
-/// Start of the sweep where offsets count from the header stamp.
+/// Time of the first point where offsets count from the header stamp.
 Time relative_start(const DecodedScan& decoded, std::int64_t first_ns, bool stamp_at_scan_end) {
   const Duration first(first_ns);
   const Duration sweep = decoded.scan.offsets.back();
-  // Offsets below zero already count from the end of the sweep.
-  const bool shift = stamp_at_scan_end && first + sweep > sweep / 2;
-  return decoded.header_stamp + first - (shift ? sweep : Duration{});
+  // Offsets that are mostly below zero already count from the end of the sweep.
+  const Duration last = first + sweep;
+  const bool shift = stamp_at_scan_end && last > sweep / 2;
+  return decoded.header_stamp + first - (shift ? last : Duration{});
 }
 
 }  // namespace

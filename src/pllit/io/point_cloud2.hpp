@@ -12,7 +12,7 @@ namespace pllit {
 
 struct PointCloudOptions {
   std::optional<TimeUnit> time_unit{};  ///< nothing: found from the span of the scan
-  bool stamp_at_scan_end = false;     ///< the header stamp of offsets that count from 0 is the end of the sweep
+  bool stamp_at_scan_end = false;       ///< the header stamp of offsets that count from 0 is the end of the sweep
 };
 
 /// Decodes one serialised message. Metres in L. Needs fields x, y, z of any number type; intensity (or reflectivity,

@@ -51,7 +51,7 @@ class PlaneResiduals {
   const PlaneMap& map_;
   const Rig& rig_;
   Matrix6 search_covariance_;
-  const PlaneResidualConfig& config_;
+  PlaneResidualConfig config_;
   Arena& arena_;
   std::vector<Association> associations_;
 };

@@ -131,7 +131,7 @@ Expected<AccelUnit> accel_unit_of(std::span<const ImuSample> imu, AccelUnit conf
   if (length > 8.0 && length < 11.5) return AccelUnit::mps2;
   return input_error(std::format(
       "the accelerometer's mean over the first {:.1f} s is {:.3f}, which is neither about 1 (g) nor about 9.8 (m/s2); set "
-      "rig.imu_unit to g or m_s2, or start the recording where the rig is not accelerating",
+      "input.accel_unit to g or m_s2, or start the recording where the rig is not accelerating",
       span_s(imu), length));
 }
 
@@ -147,6 +147,7 @@ Stillness measure_stillness(std::span<const ImuSample> imu, const StartUpConfig&
   if (s.gyro_spread_rps > config.still_gyro_spread_rps || s.accel_spread_mps2 > config.still_accel_spread_mps2 ||
       s.slow_spread_rps > config.still_slow_spread_rps)
     return s;
+  s.quiet = true;
 
   const Vector3d up_I = s.mean_accel_mps2.normalized();
   const double rate_about_vertical = s.mean_rate_rps.dot(up_I);
@@ -177,6 +178,7 @@ Expected<std::optional<Start>> start_up(std::span<const ImuSample> imu, const Im
   Start start;
   start.estimate = initial_estimate(si, stillness, noise, config);
   start.still = stillness.still;
+  start.stillness = stillness;
   start.unit = *unit;
   start.report = std::format("{} start, accelerometer in {} ({}{})", start.still ? "still" : "moving",
                              *unit == AccelUnit::g ? "g" : "m/s2", describe(stillness),

@@ -29,12 +29,22 @@ struct StartUpConfig {
   double moving_speed_mps = 10.0;        ///< speed that a moving start may have (one sigma)
 };
 
+/// How still a stretch of IMU data is.
+struct Stillness {
+  bool still = false;
+  Vector3d mean_rate_rps, mean_accel_mps2;
+  double gyro_spread_rps = 0.0, accel_spread_mps2 = 0.0;  ///< largest standard deviation of an axis
+  double slow_spread_rps = 0.0;                           ///< likewise, of the means over tenths of the stretch
+  bool quiet = false;                  ///< small spread: at rest, or turning very evenly
+  bool gravity_confirms_bias = false;  ///< a mean rate that the direction of gravity does not follow is a bias
+};
 /// The state at the first sample's time, with what is known of it. W has z up and its x axis along the IMU's; position and
 /// attitude are exact by definition (they define W), so the doubt about the vertical stands with gravity and the
 /// accelerometer bias, jointly.
 struct Start {
   Estimate estimate;
   bool still = false;
+  Stillness stillness;
   AccelUnit unit = AccelUnit::mps2;
   std::string report;  ///< one line for people
 };
@@ -44,14 +54,6 @@ Expected<AccelUnit> accel_unit_of(std::span<const ImuSample> imu, AccelUnit conf
 /// Factor that turns the unit into m/s2.
 double mps2_per(AccelUnit unit);
 
-/// How still a stretch of IMU data is.
-struct Stillness {
-  bool still = false;
-  Vector3d mean_rate_rps, mean_accel_mps2;
-  double gyro_spread_rps = 0.0, accel_spread_mps2 = 0.0;  ///< largest standard deviation of an axis
-  double slow_spread_rps = 0.0;                           ///< likewise, of the means over tenths of the stretch
-  bool gravity_confirms_bias = false;  ///< a mean rate that the direction of gravity does not follow is a bias
-};
 /// `imu` in m/s2 and rad/s. Still means small spread and small mean rate, or a rate that gravity shows to be a bias: about
 /// the vertical gravity shows nothing, so there only a small rate will do.
 Stillness measure_stillness(std::span<const ImuSample> imu, const StartUpConfig& config);

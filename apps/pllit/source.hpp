@@ -1,0 +1,31 @@
+// A SOURCE of the command line: bags of one recording, or the simulator.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pllit/slam/config.hpp"
+#include "pllit/sensor/measurements.hpp"
+#include "pllit/state/trajectory.hpp"
+
+namespace pllit::app {
+
+struct OpenedSource {
+  std::unique_ptr<EventSource> events;
+  Rig rig;
+  Trajectory truth;  ///< empty for recordings
+  std::string name;  ///< for the session folder
+};
+
+enum class Images { skipped, wanted };
+
+/// Opens `sim:...` or the bags. The simulator brings its own rig, as its data sheets say; a recording takes the configuration's.
+Expected<OpenedSource> open_source(const std::vector<std::string>& sources, const Config& config, Images images = Images::skipped);
+bool is_simulation(const std::vector<std::string>& sources);
+
+/// The configuration of --config and --set: a preset, a file, or the defaults; checked as a whole.
+Expected<Config> read_config(const std::string& name_or_path, const std::vector<std::string>& settings);
+
+}  // namespace pllit::app

@@ -1,0 +1,84 @@
+// pllit eval: scores an estimated trajectory against the true one.
+#include <cstdio>
+#include <format>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "pllit/eval/evaluate.hpp"
+#include "pllit/eval/scores_json.hpp"
+#include "pllit/io/tum.hpp"
+#include "program.hpp"
+
+namespace pllit::app {
+namespace {
+
+struct Options {
+  std::string truth, estimate;
+  EvaluationConfig evaluation;
+  bool json = false;
+};
+
+Expected<Scores> scores_of(const Options& options) {
+  const auto truth = read_tum(options.truth);
+  if (!truth) return std::unexpected(truth.error());
+  const auto estimate = read_tum(options.estimate);
+  if (!estimate) return std::unexpected(estimate.error());
+  return evaluate(*truth, *estimate, options.evaluation);
+}
+
+std::string text_of(const Scores& scores) {
+  const Statistics &m = scores.ape.translation_m, &deg = scores.ape.rotation_deg;
+  std::string text = std::format("{} poses matched over {:.1f} m\n\n", scores.matched, scores.length_m);
+  text += std::format("{:<12}{:>10}{:>10}{:>10}\n", "APE", "rmse", "median", "max");
+  text += std::format("{:<12}{:>10.4f}{:>10.4f}{:>10.4f}\n", "  metres", m.rmse, m.median, m.max);
+  text += std::format("{:<12}{:>10.4f}{:>10.4f}{:>10.4f}\n", "  degrees", deg.rmse, deg.median, deg.max);
+  text += std::format("\n{:<12}{:>10}{:>10}{:>10}{:>10}\n", "RPE over", "rmse m", "percent", "yaw deg", "pairs");
+  for (const RelativeError& error : scores.rpe) {
+    const std::string name = std::format("  {} m", error.delta_m);
+    text += error.pairs == 0 ? std::format("{:<12}{:>10}\n", name, "the path is too short")
+                             : std::format("{:<12}{:>10.4f}{:>10.3f}{:>10.3f}{:>10}\n", name, error.rmse_m,
+                                           error.percent, error.yaw_deg, error.pairs);
+  }
+  return text;
+}
+
+std::string json_of(const Scores& scores) {
+  nlohmann::ordered_json json = {{"schema_version", kSchemaVersion}};
+  json.update(scores_json(scores));
+  return json.dump(2) + "\n";
+}
+
+ExitCode run(const Options& options) {
+  const auto scores = scores_of(options);
+  if (!scores) return report(scores.error());
+  std::fputs((options.json ? json_of(*scores) : text_of(*scores)).c_str(), stdout);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Verb add_eval(CLI::App& program) {
+  CLI::App* verb = program.add_subcommand("eval", "Score an estimated trajectory against the true one");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("truth", options->truth, "True trajectory")->type_name("TRUTH.tum")->required();
+  verb->add_option("estimate", options->estimate, "Estimated trajectory")->type_name("ESTIMATE.tum")->required();
+  const std::map<std::string, Alignment> alignments{
+      {"se3", Alignment::se3}, {"yaw", Alignment::yaw}, {"none", Alignment::none}};
+  verb->add_option("--align", options->evaluation.alignment,
+                   "How the estimate is moved onto the truth first: se3 (default), yaw (keeps its vertical) or none")
+      ->transform(CLI::CheckedTransformer(alignments).description(""))
+      ->type_name("se3|yaw|none");
+  verb->add_option("--rpe", options->evaluation.rpe_deltas_m,
+                   "Distances over which the drift is measured (default 10 100)")
+      ->type_name("METRES");
+  verb->add_flag("--json", options->json, "Print JSON");
+  verb->footer(
+      "Examples:\n"
+      "  pllit eval truth.tum results/latest/trajectory.tum\n"
+      "  pllit eval truth.tum estimate.tum --align yaw --rpe 10 50 100 --json");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace pllit::app

@@ -1,0 +1,175 @@
+// pllit run: a recording or a simulation becomes a session: trajectory, map and health record.
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "interrupt.hpp"
+#include "pllit/eval/evaluate.hpp"
+#include "pllit/eval/scores_json.hpp"
+#include "pllit/io/session.hpp"
+#include "pllit/io/tum.hpp"
+#include "pllit/slam/config_yaml.hpp"
+#include "pllit/slam/frame_table.hpp"
+#include "pllit/slam/run.hpp"
+#include "program.hpp"
+#include "progress_bar.hpp"
+#include "source.hpp"
+#include "summary.hpp"
+
+namespace pllit::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> sources, settings;
+  std::string config, out, truth;
+  bool json = false;
+};
+
+/// Hands frames to the session: poses and health as they come, points that are new to the map.
+FrameSink session_sink(SessionWriter& session, MapRecorder& map) {
+  return [&session, &map](const FrameEstimate& frame) -> Expected<void> {
+    const NavState& state = frame.posterior.mean;
+    if (auto done = session.append_pose({state.time, state.T_W_I()}); !done) return done;
+    if (auto done = session.append_health(health_row(frame)); !done) return done;
+    return session.append_map(map.new_points(frame));
+  };
+}
+
+nlohmann::ordered_json run_json(const RunSummary& summary, const Options& options, const Config& config, const char* status) {
+  nlohmann::ordered_json json = summary_json(summary);
+  json["status"] = status;
+  json["program"] = version_line();
+  json["sources"] = options.sources;
+  json["config"] = dump_config(config);
+  return json;
+}
+
+/// Scores the session's trajectory where the truth is known, into the summary.
+Expected<void> add_scores(nlohmann::ordered_json& json, const Trajectory& truth, const fs::path& session) {
+  if (truth.empty()) return {};
+  const auto estimate = read_tum(session / "trajectory.tum");
+  if (!estimate) return std::unexpected(estimate.error());
+  const auto scores = evaluate(truth, *estimate);
+  if (!scores) return in_context("scoring against the truth", scores.error());
+  const nlohmann::ordered_json figures = scores_json(*scores);
+  for (const char* key : {"ape", "rpe", "matched", "align"}) json[key] = figures[key];
+  return {};
+}
+
+Expected<Trajectory> truth_of(const Options& options, const OpenedSource& source) {
+  if (options.truth.empty()) return source.truth;
+  return read_tum(options.truth);
+}
+
+class SessionRun {
+ public:
+  SessionRun(const Options& options, const Config& config, OpenedSource source, Trajectory truth, SessionWriter session)
+      : options_(options),
+        config_(config),
+        source_(std::move(source)),
+        truth_(std::move(truth)),
+        session_(std::move(session)),
+        map_(config.map_file_voxel_m, config.map.radius_m) {}
+
+  Expected<ExitCode> operator()() {
+    if (!source_.truth.empty())
+      if (auto done = write_tum(session_.folder() / "truth.tum", source_.truth); !done) return std::unexpected(done.error());
+    RunSummary summary;
+    // What a kill leaves behind says of itself that it is unfinished.
+    if (auto done = session_.write_run(run_json(summary, options_, config_, "unfinished")); !done)
+      return std::unexpected(done.error());
+    const auto result = run(summary);
+    return finish(summary, result);
+  }
+
+ private:
+  Expected<void> run(RunSummary& summary) {
+    const Interrupt interrupt;
+    ProgressBar bar("frames", spdlog::should_log(spdlog::level::info));
+    const RunHooks hooks{.sink = session_sink(session_, map_),
+                         .progress = [&](double share) { bar.show(share, summary.frames); },
+                         .stop = interrupt.token()};
+    return run_odometry(*source_.events, source_.rig, config_, hooks, summary);
+  }
+
+  Expected<ExitCode> finish(const RunSummary& summary, const Expected<void>& result) {
+    const char* status = !result ? "failed" : summary.interrupted ? "interrupted" : "done";
+    auto json = run_json(summary, options_, config_, status);
+    if (!result) json["error"] = result.error().message;
+    const auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
+    if (!scored) json["notes"].push_back(scored.error().message);
+    if (auto done = session_.write_run(json); !done) return std::unexpected(done.error());
+    print(json);
+    if (!result) return report(result.error());
+    if (summary.interrupted) {
+      spdlog::warn("interrupted; what was done is in {}", session_.folder().string());
+      return ExitCode::failed;
+    }
+    if (!scored && !options_.truth.empty()) return report(scored.error());
+    return summary.was_degraded() ? ExitCode::degraded : ExitCode::done;
+  }
+
+  void print(nlohmann::ordered_json json) const {
+    const std::string folder = session_.folder().string();
+    json.erase("config");
+    json["session"] = folder;
+    std::fputs((options_.json ? json.dump(2) + "\n" : summary_text(json) + "session     " + folder + "\n").c_str(), stdout);
+  }
+
+  const Options& options_;
+  const Config& config_;
+  OpenedSource source_;
+  Trajectory truth_;
+  SessionWriter session_;
+  MapRecorder map_;
+};
+
+Expected<ExitCode> run_session(const Options& options) {
+  const auto config = read_config(options.config, options.settings);
+  if (!config) return std::unexpected(config.error());
+  auto source = open_source(options.sources, *config);
+  if (!source) return std::unexpected(source.error());
+  auto truth = truth_of(options, *source);
+  if (!truth) return std::unexpected(truth.error());
+  const fs::path folder = options.out.empty() ? default_session_folder("results", source->name, std::chrono::system_clock::now())
+                                              : fs::path(options.out);
+  auto session =
+      SessionWriter::create(folder, {.health_columns = health_columns(), .map_fields = MapRecorder::fields()});
+  if (!session) return std::unexpected(session.error());
+  if (options.out.empty())
+    if (const auto linked = link_latest(folder); !linked) spdlog::warn("{}", linked.error().message);
+  return SessionRun(options, *config, std::move(*source), std::move(*truth), std::move(*session))();
+}
+
+ExitCode run(const Options& options) {
+  const auto code = run_session(options);
+  return code ? *code : report(code.error());
+}
+
+}  // namespace
+
+Verb add_run(CLI::App& program) {
+  CLI::App* verb = program.add_subcommand("run", "Estimate trajectory and map from a recording or a simulation");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("source", options->sources, "ROS 1 bags of one recording, or sim:SCENE?key=value&...")->type_name("SOURCE...")->required();
+  verb->add_option("--config", options->config, "Preset or YAML file (default: the defaults)")->type_name("FILE|PRESET");
+  verb->add_option("--out", options->out, "Session folder (default: results/NAME-TIME)")->type_name("DIR");
+  verb->add_option("--truth", options->truth, "True trajectory to score against")->type_name("FILE.tum");
+  verb->add_option("--set", options->settings, "Replace one value of the configuration, e.g. map.voxel_m=0.3")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->expected(1);
+  verb->add_flag("--json", options->json, "Print the summary as JSON");
+  verb->footer(
+      "Examples:\n"
+      "  pllit run 'sim:room?seed=1&duration=30'\n"
+      "  pllit run drive.bag --config kitti --truth drive.tum --out results/drive");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace pllit::app

@@ -1,0 +1,72 @@
+#include "pllit/slam/frame_table.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace pllit {
+namespace {
+
+std::string joined(const std::vector<std::string>& reasons) {
+  std::string text;
+  for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> health_columns() {
+  return {"time_s",      "state",       "reasons",     "points",          "candidates",   "inliers",
+          "residual_m",  "iterations",  "speed_mps",   "sigma_x_m",       "sigma_y_m",    "sigma_z_m",
+          "sigma_yaw_deg", "share_x",   "share_y",     "share_z",         "weakest_share", "degenerate",
+          "since_match_s", "imu_gap_s", "frame_ms"};
+}
+
+std::vector<FrameCell> health_row(const FrameEstimate& frame) {
+  const FrameFacts& facts = frame.facts;
+  const Vector6 sigma = frame.pose_covariance().diagonal().cwiseMax(0.0).cwiseSqrt();  // theta, p in W
+  const auto count = [](int n) { return static_cast<std::int64_t>(n); };
+  const Vector6& share = facts.localizability.axis_share;
+  return {to_seconds(frame.posterior.mean.time),
+          std::string(name_of(frame.health.state)),
+          joined(frame.health.reasons),
+          count(facts.points),
+          count(facts.candidates),
+          count(facts.inliers),
+          facts.residual_rms_m,
+          count(facts.iterations),
+          facts.speed_mps,
+          sigma[3],
+          sigma[4],
+          sigma[5],
+          sigma[2] * 180.0 / M_PI,
+          share[0],
+          share[1],
+          share[2],
+          facts.localizability.weakest_share,
+          count(facts.localizability.degenerate),
+          facts.since_match_s,
+          facts.longest_imu_gap_s,
+          std::accumulate(frame.stage_ms.begin(), frame.stage_ms.end(), 0.0)};
+}
+
+PointTable MapRecorder::new_points(const FrameEstimate& frame) {
+  if (!first_) first_ = frame.posterior.mean.time;
+  const auto seconds = static_cast<float>(to_seconds(frame.posterior.mean.time - *first_));
+  const Matrix3d R = frame.posterior.mean.R_W_I.rotation();
+  std::vector<Vector3f> points_W;
+  points_W.reserve(frame.cloud.points_I.size());
+  for (const Vector3f& p_I : frame.cloud.points_I)
+    points_W.push_back((R * p_I.cast<double>() + frame.posterior.mean.p_W).cast<float>());
+
+  PointTable table{.points = {}, .fields = {{"intensity", {}}, {"time", {}}}};
+  if (frame.health.state == HealthState::lost || (frame.facts.has_scan && !frame.facts.matched && !frame.facts.map_empty))
+    return table;  // a pose that does not fit the map must not enter it
+  for (const std::size_t i : fresh_.select(points_W, frame.posterior.mean.p_W)) {
+    table.points.push_back(points_W[i]);
+    table.fields[0].values.push_back(frame.cloud.intensity[i]);
+    table.fields[1].values.push_back(seconds);
+  }
+  return table;
+}
+
+}  // namespace pllit

@@ -1,0 +1,192 @@
+#include "pllit/slam/odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <format>
+#include <limits>
+#include <thread>
+
+namespace pllit {
+
+namespace ix = error_index;
+
+namespace {
+
+int thread_count(int configured) {
+  return configured > 0 ? configured : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+}  // namespace
+
+Odometry::Odometry(const Rig& rig, const Config& config)
+    : rig_(rig), config_(config), arena_(thread_count(config.threads)), map_(config.map), drift_(config.drift) {}
+
+Expected<std::vector<FrameEstimate>> Odometry::process(SensorPacket packet) {
+  waiting_.push_back(std::move(packet));
+  if (!start_) {
+    const auto start = try_start();
+    if (!start) return std::unexpected(start.error());
+    if (!*start) return std::vector<FrameEstimate>{};
+    begin((*start)->still ? **start : with_settled_velocity(**start));
+  }
+  std::vector<FrameEstimate> frames;
+  for (const SensorPacket& next : waiting_) frames.push_back(step(next));
+  waiting_.clear();
+  return frames;
+}
+
+FrameEstimate Odometry::step(const SensorPacket& packet) {
+  StageClock clock;
+  FrameEstimate frame;
+  FrameFacts& facts = frame.facts;
+
+  const Propagation motion = propagate(estimate_, in_si_units(packet.imu), packet.end, rig_.imu, config_.gaps);
+  estimate_ = motion.predicted;
+  clock.charge(Stage::propagate);
+
+  if (packet.scan) {
+    facts.has_scan = true;
+    frame.cloud = deskew(*packet.scan, motion.path, rig_.T_I_L, rig_.lidar);
+    const PointCloud dense = downsample(frame.cloud, config_.scan.insert_voxels * config_.map.voxel_m);
+    const PointCloud sparse = thin(downsample(dense, config_.scan.match_voxels * config_.map.voxel_m),
+                                   static_cast<std::size_t>(config_.scan.max_matched));
+    clock.charge(Stage::deskew);
+
+    const UpdateResult lidar = match(motion.predicted, sparse, facts);
+    estimate_ = lidar.posterior;
+    clock.charge(Stage::lidar);
+
+    extend_map(dense, facts);  // once, from the frame's final posterior
+    clock.charge(Stage::map);
+  }
+  facts.speed_mps = estimate_.mean.v_W.norm();
+  facts.since_match_s = to_seconds(packet.end - last_match_);
+  facts.longest_imu_gap_s = to_seconds(motion.longest_gap);
+  facts.allowed_imu_gap_s = to_seconds(config_.gaps.max_gap);
+  frame.health = assess(facts, config_.health);
+  frame.posterior = estimate_;
+  frame.drift_covariance = drift_.covariance_W();
+  frame.stage_ms = clock.times_ms();
+  return frame;
+}
+
+UpdateResult Odometry::match(const Estimate& predicted, const PointCloud& points, FrameFacts& facts) {
+  facts.points = static_cast<int>(points.points_I.size());
+  facts.map_empty = map_.voxels() == 0;
+  UpdateResult result{.posterior = predicted, .last = {}, .iterations = 0, .converged = false};
+  if (facts.map_empty) return result;
+
+  PlaneResiduals residuals(points, map_, rig_, predicted.covariance.topLeftCorner<6, 6>(), config_.planes, arena_);
+  DegenerateDirections unobserved;
+  const auto linearize = [&](const NavState& state) {
+    const ObservedEquations observed = observed_part(residuals(state), state.R_W_I, unobserved_, config_.degeneracy);
+    facts.localizability = observed.localizability;
+    unobserved = observed.unobserved;
+    return observed.sums;
+  };
+  result = iterated_update(predicted, linearize, config_.filter);
+  unobserved_ = unobserved;
+  facts.candidates = result.last.candidates;
+  facts.inliers = result.last.inliers;
+  facts.iterations = result.iterations;
+  facts.residual_rms_m = facts.inliers > 0 ? std::sqrt(result.last.squared_m2 / facts.inliers) : 0.0;
+  facts.matched = match_accepted(result.last, config_.health);
+  if (!facts.matched) result.posterior = predicted;
+  return result;
+}
+
+void Odometry::extend_map(const PointCloud& points, FrameFacts& facts) {
+  unmatched_ = facts.matched || facts.map_empty ? 0 : unmatched_ + 1;
+  if (unmatched_ >= config_.health.restart_after) {
+    // The old map does not help any more. The new one begins at the predicted pose and inherits its error.
+    facts.map_restarted = true;
+    unmatched_ = 0;
+    map_.clear();
+    unobserved_ = {};
+    drift_.restart(estimate_);
+    estimate_.covariance.topRows<ix::pose_size>().setZero();
+    estimate_.covariance.leftCols<ix::pose_size>().setZero();
+    estimate_.covariance.topLeftCorner<ix::pose_size, ix::pose_size>() = 1e-10 * Matrix6::Identity();
+  }
+  if (unmatched_ > 0) return;  // a pose that does not fit the map must not enter it
+  last_match_ = estimate_.mean.time;
+  drift_.move_to(estimate_.mean.p_W);
+  if (facts.matched) drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points);
+  map_.insert(points, estimate_.mean.T_W_I());
+  map_.slide(estimate_.mean.p_W);
+}
+
+Expected<std::optional<Start>> Odometry::try_start() const {
+  std::vector<ImuSample> imu;
+  for (const SensorPacket& packet : waiting_)
+    for (const ImuSample& sample : packet.imu)
+      if (imu.empty() || sample.time > imu.back().time) imu.push_back(sample);
+  const double waited_s = to_seconds(waiting_.back().end - waiting_.front().end);
+  if (waited_s > 10.0 + config_.start.window_s && imu.size() < 5)
+    return input_error(std::format("{:.0f} s of scans came without IMU data; check the IMU topic and its clock", waited_s));
+  auto start = start_up(imu, rig_.imu, config_.start);
+  if (!start || !*start || (*start)->still || !(*start)->stillness.quiet || config_.start.mode == StartMode::moving) return start;
+  // A quiet gyroscope with a mean rate is at rest and biased, or turns very evenly. Gravity cannot tell which about the vertical, but
+  // the scans can.
+  StartUpConfig any_bias = config_.start;
+  any_bias.still_rate_rps = std::numeric_limits<double>::infinity();
+  auto at_rest = start_up(imu, rig_.imu, any_bias);
+  return scans_show_no_turn(**at_rest) ? at_rest : start;
+}
+
+/// A trial that takes the rig to be at rest and matches the waiting scans to each other: do they turn as the gyroscope said?
+bool Odometry::scans_show_no_turn(const Start& start) const {
+  Odometry trial(rig_, config_);
+  trial.begin(start);
+  for (const SensorPacket& packet : waiting_) trial.step(packet);
+  const SO3 turned = start.estimate.mean.R_W_I.inverse() * trial.estimate_.mean.R_W_I;
+  const double elapsed_s = to_seconds(trial.estimate_.mean.time - start.estimate.mean.time);
+  return trial.unmatched_ == 0 && log_so3(turned).norm() < 0.25 * start.stillness.mean_rate_rps.norm() * elapsed_s;
+}
+
+void Odometry::begin(const Start& start) {
+  start_ = start;
+  estimate_ = start.estimate;
+  last_match_ = start.estimate.mean.time;
+}
+
+/// A moving start knows no velocity, so its first scans cannot be de-skewed well. A trial odometry matches them to each other, and what
+/// it finds is where the next trial begins, until the velocity stays.
+Start Odometry::with_settled_velocity(Start start) const {
+  constexpr std::size_t packets = 4;
+  constexpr int trials = 6;
+  constexpr double settled_mps = 0.03, settled_sigma_mps = 0.3;
+  const Matrix3d prior = start.estimate.covariance.block<3, 3>(ix::v, ix::v);
+  Matrix3d posterior = prior;
+  for (int i = 0; i < trials; ++i) {
+    Odometry trial(rig_, config_);
+    trial.begin(start);
+    Estimate by_imu = start.estimate;
+    for (std::size_t k = 0; k < std::min(packets, waiting_.size()); ++k) {
+      by_imu = propagate(by_imu, trial.in_si_units(waiting_[k].imu), waiting_[k].end, rig_.imu, config_.gaps).predicted;
+      trial.step(waiting_[k]);
+    }
+    // Only what the scans have shown: along a corridor the velocity stays as unknown as it was.
+    posterior = trial.estimate_.covariance.block<3, 3>(ix::v, ix::v);
+    const Matrix3d shown = Matrix3d::Identity() - posterior * prior.inverse();
+    const Vector3d change = shown * (trial.estimate_.mean.v_W - by_imu.mean.v_W);
+    start.estimate.mean.v_W += change;
+    if (change.norm() < settled_mps) break;
+  }
+  start.estimate.covariance.block<3, 3>(ix::v, ix::v) = posterior + settled_sigma_mps * settled_sigma_mps * Matrix3d::Identity();
+  return start;
+}
+
+std::vector<ImuSample> Odometry::in_si_units(std::vector<ImuSample> imu) const {
+  const double scale = mps2_per(start_->unit);
+  for (ImuSample& sample : imu) sample.accel_mps2 *= scale;
+  return imu;
+}
+
+Matrix6 relative_pose_covariance(const FrameEstimate& a, const FrameEstimate& b) {
+  const Vector3d displacement_W = b.posterior.mean.p_W - a.posterior.mean.p_W;
+  return b.drift_covariance - carried(a.drift_covariance, displacement_W) + pose_covariance_W(b.posterior) +
+         carried(pose_covariance_W(a.posterior), displacement_W);
+}
+
+}  // namespace pllit

@@ -1,0 +1,67 @@
+// The odometry: packets in, frame estimates out.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pllit/base/arena.hpp"
+#include "pllit/sensor/packet.hpp"
+#include "pllit/slam/config.hpp"
+#include "pllit/slam/drift.hpp"
+#include "pllit/slam/health.hpp"
+#include "pllit/slam/stage_clock.hpp"
+
+namespace pllit {
+
+/// The estimate at the end of one packet, and what led to it.
+struct FrameEstimate {
+  Estimate posterior;        ///< its covariance holds against the map around the robot
+  Matrix6 drift_covariance;  ///< of that map against the origin, (theta, p) in W
+  Health health;
+  FrameFacts facts;
+  PointCloud cloud;  ///< the scan's points in I, de-skewed; empty without a scan
+  StageTimes stage_ms{};
+
+  /// Covariance of (theta, p) in W against the origin.
+  Matrix6 pose_covariance() const { return drift_covariance + pose_covariance_W(posterior); }
+};
+
+class Odometry {
+ public:
+  Odometry(const Rig& rig, const Config& config);
+
+  /// Takes the next packet. Returns the frames that are now known: none while starting up, all of them once started, then one a
+  /// packet. An error where no start is possible.
+  Expected<std::vector<FrameEstimate>> process(SensorPacket packet);
+
+  /// How it started, once it has.
+  const std::optional<Start>& start() const { return start_; }
+  const PlaneMap& map() const { return map_; }
+
+ private:
+  Expected<std::optional<Start>> try_start() const;
+  bool scans_show_no_turn(const Start& start) const;
+  void begin(const Start& start);
+  Start with_settled_velocity(Start start) const;
+  FrameEstimate step(const SensorPacket& packet);
+  UpdateResult match(const Estimate& predicted, const PointCloud& points, FrameFacts& facts);
+  void extend_map(const PointCloud& points, FrameFacts& facts);
+  std::vector<ImuSample> in_si_units(std::vector<ImuSample> imu) const;
+
+  Rig rig_;
+  Config config_;
+  Arena arena_;
+  PlaneMap map_;
+  MapDrift drift_;
+  std::vector<SensorPacket> waiting_;  ///< until started
+  std::optional<Start> start_;
+  Estimate estimate_;
+  DegenerateDirections unobserved_;  ///< of the last scan
+  Time last_match_;
+  int unmatched_ = 0;  ///< scans in a row
+};
+
+/// Covariance of the pose of `b` seen from `a` (theta, p in W, about a's position): what the map walked between them and the two matches.
+Matrix6 relative_pose_covariance(const FrameEstimate& a, const FrameEstimate& b);
+
+}  // namespace pllit
