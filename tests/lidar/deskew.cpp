@@ -101,11 +101,11 @@ std::vector<T> read_binary(const std::filesystem::path& path) {
   return values;
 }
 
-/// Pose that takes raw points to deskewed ones, from those measured within a millisecond of `time`.
+/// Pose that takes raw points to deskewed ones, from those measured within 60 microseconds of `time`: one or two columns.
 SE3 pose_from_points(const LidarScan& scan, const std::vector<Vector3d>& expected, const SE3& T_I_L, Duration time) {
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < expected.size(); ++i)
-    if (std::abs((scan.offsets[i] - time).count()) < 1'000'000) near.push_back(i);
+    if (std::abs((scan.offsets[i] - time).count()) < 60'000) near.push_back(i);
   Eigen::Matrix3Xd from(3, near.size()), to(3, near.size());
   for (std::size_t k = 0; k < near.size(); ++k) {
     from.col(static_cast<Eigen::Index>(k)) = T_I_L.act(scan.points_L[near[k]].cast<double>());
@@ -117,7 +117,7 @@ SE3 pose_from_points(const LidarScan& scan, const std::vector<Vector3d>& expecte
 
 TEST(Deskew, ReproducesAnotherProgramsResultOnRealScans) {
   // gtsam_points deskewed these scans of the Newer College recording, into the IMU frame at the first point's time. With which motion is
-  // not recorded: poses every 10 ms are read off its result, and between them ours must agree. The extrinsics are read off the points
+  // not recorded: poses every 5 ms are read off its result, and between them ours must agree. The extrinsics are read off the points
   // at time zero, which only they move.
   const SE3 T_I_L = pose_from(exp_so3({0.0, 0.0, M_PI}), {-0.006, 0.012, -0.029});
   for (const std::string name : {"00", "01", "02"}) {
@@ -136,12 +136,12 @@ TEST(Deskew, ReproducesAnotherProgramsResultOnRealScans) {
       expected.push_back(deskewed[i].cast<double>());
     }
     MotionPath path;
-    for (int k = 0; k <= 10; ++k) {
-      const Duration time = k * (scan.end() - scan.start) / 10;
+    for (int k = 0; k <= 20; ++k) {
+      const Duration time = k * (scan.end() - scan.start) / 20;
       const SE3 pose = pose_from_points(scan, expected, T_I_L, time);
       path.nodes.push_back({scan.start + time, rotation_from(pose.quat()), pose.translation(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
     }
-    for (int k = 0; k < 10; ++k) {
+    for (int k = 0; k < 20; ++k) {
       const double dt = to_seconds(path.nodes[k + 1].time - path.nodes[k].time);
       path.nodes[k].v_W = (path.nodes[k + 1].p_W - path.nodes[k].p_W) / dt;
       path.nodes[k].omega_I = log_so3(path.nodes[k].R_W_I.inverse() * path.nodes[k + 1].R_W_I) / dt;
@@ -158,7 +158,7 @@ TEST(Deskew, ReproducesAnotherProgramsResultOnRealScans) {
     std::ranges::sort(errors_m);
     EXPECT_GT(moved_m, 0.1) << name << " shows no motion to take out";
     EXPECT_LT(errors_m[errors_m.size() / 2], 0.003) << name;
-    EXPECT_LT(errors_m[errors_m.size() * 99 / 100], 0.02) << name;
+    EXPECT_LT(errors_m[errors_m.size() * 99 / 100], 0.015 * moved_m) << name;
   }
 }
 

@@ -19,14 +19,34 @@ PointCloud random_cloud(unsigned seed, int count) {
   return cloud;
 }
 
-TEST(Downsample, KeepsTheFirstPointOfEveryVoxel) {
-  const PointCloud cloud = random_cloud(1, 5000);
-  const PointCloud kept = downsample(cloud, 0.5);
-  std::set<VoxelKey> expected;
-  std::vector<float> first;
-  for (std::size_t i = 0; i < cloud.points_I.size(); ++i)
-    if (expected.insert(voxel_key(voxel_of(cloud.points_I[i], 2.0))).second) first.push_back(cloud.intensity[i]);
-  EXPECT_EQ(kept.intensity, first);
+TEST(Downsample, EqualsItsBruteForceTwin) {
+  test::Random random(3);
+  PointCloud cloud;
+  for (int i = 0; i < 4000; ++i) {  // a wavy surface, so that no voxel is full
+    const double x = random.uniform(-5.0, 5.0), y = random.uniform(-5.0, 5.0);
+    cloud.points_I.push_back(Vector3d(x, y, std::sin(x) + random.normal(0.01)).cast<float>());
+    cloud.intensity.push_back(static_cast<float>(i));
+  }
+  const double spacing_m = 0.5;
+  std::vector<Vector3f> twin;
+  for (const Vector3f& p : cloud.points_I)
+    if (std::ranges::none_of(twin, [&](const Vector3f& q) { return (p - q).norm() < 0.5F; })) twin.push_back(p);
+  EXPECT_EQ(downsample(cloud, spacing_m).points_I, twin);
+}
+
+TEST(Downsample, DoesNotMoveAWallThatLiesNearAVoxelBorder) {
+  test::Random random(4);
+  for (const double height_m : {0.0, 0.003, 0.006, 0.01}) {
+    PointCloud cloud;
+    for (int i = 0; i < 200000; ++i) {
+      cloud.points_I.push_back(Vector3d(random.uniform(-10.0, 10.0), random.uniform(-10.0, 10.0), height_m + random.normal(0.01)).cast<float>());
+      cloud.intensity.push_back(0.0F);
+    }
+    const PointCloud kept = downsample(cloud, 0.2);
+    double mean_m = 0.0;
+    for (const Vector3f& p : kept.points_I) mean_m += p.z() / static_cast<double>(kept.points_I.size());
+    EXPECT_NEAR(mean_m, height_m, 4.0 * 0.01 / std::sqrt(static_cast<double>(kept.points_I.size())));
+  }
 }
 
 TEST(Thin, KeepsAnEvenShareInOrder) {

@@ -22,7 +22,7 @@ TEST(MapDrift, GrowsOnlyWithNewPartsOfTheMap) {
 }
 
 TEST(MapDrift, TurnsAnErrorInHeadingIntoOneInPosition) {
-  MapDrift drift({.gain = 1.0});
+  MapDrift drift({.gain = 1.0, .shift_m = 0.0, .turn_rad = 0.0});
   Estimate estimate;
   estimate.covariance(2, 2) = 1e-4;  // 0.01 rad about the vertical
   drift.add_scan(estimate, 1.0);

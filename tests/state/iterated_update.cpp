@@ -115,6 +115,32 @@ TEST(IteratedUpdate, CarriesAnUnobservedDirectionByThePrior) {
   EXPECT_NEAR(posterior.mean.p_W.y(), 0.05, 1e-4);
 }
 
+TEST(IteratedUpdate, GivesNoGainToADirectionThatTheSensorCallsUnobserved) {
+  // A sensor of z whose normal is off by 0.005: with a metre of doubt about x and a millimetre about z, the full gain would move x by
+  // decimetres to explain a millimetre of noise.
+  Estimate prior;
+  prior.covariance = 1e-6 * Matrix18::Identity();
+  prior.covariance(ix::p, ix::p) = 1.0;
+  const Vector3d normal = Vector3d(0.005, 0.0, 1.0).normalized();
+  const auto sensor = [&](bool says_so) {
+    return [&normal, says_so](const NavState& x) {
+      NormalEquations sums;
+      sums.H.block<3, 3>(ix::p, ix::p) = 1e6 * normal * normal.transpose();
+      sums.b.segment<3>(ix::p) = 1e6 * normal * (0.001 - normal.dot(x.p_W));
+      sums.inliers = 1;
+      if (says_so) sums.unobserved = Vector18::Unit(ix::p);
+      return sums;
+    };
+  };
+  EXPECT_GT(std::abs(iterated_update(prior, sensor(false), {}).posterior.mean.p_W.x()), 0.05);
+  const Estimate posterior = iterated_update(prior, sensor(true), {}).posterior;
+  EXPECT_NEAR(posterior.mean.p_W.x(), 0.0, 1e-12);
+  EXPECT_NEAR(posterior.covariance(ix::p, ix::p), 1.0, 1e-9);
+  EXPECT_GT(posterior.mean.p_W.z(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Matrix18> eigen(posterior.covariance);
+  EXPECT_GT(eigen.eigenvalues()[0], 0.0);
+}
+
 TEST(IteratedUpdate, AcceptsAPriorThatIsCertainInSomeDirections) {
   Estimate prior;
   prior.covariance = 0.01 * Matrix18::Identity();

@@ -120,6 +120,15 @@ TEST(Propagate, GoesStraightOnThroughAGapAndDoubtsIt) {
   EXPECT_GT(std::sqrt(result.predicted.covariance(ix::p, ix::p)), 1.0);
 }
 
+TEST(Propagate, DoesNotTrustAReadingThatIsHeldOverManyShortPackets) {
+  // A rig that accelerated when its IMU fell silent: each packet is shorter than the gap, all together are not.
+  Estimate estimate;
+  const auto imu = constant_imu(Vector3d::Zero(), {5.0, 0.0, 9.81}, 100.0, 0.1);
+  for (int i = 1; i <= 20; ++i) estimate = propagate(estimate, imu, Time(i * 100ms), ImuNoise{}).predicted;
+  EXPECT_LT(estimate.mean.v_W.x(), 2.0);
+  EXPECT_GT(std::sqrt(estimate.covariance(ix::v, ix::v)), 0.5);
+}
+
 TEST(Propagate, StaysFiniteWithoutAnyImuData) {
   Estimate start;
   start.mean.v_W = Vector3d(1.0, 0.0, 0.0);

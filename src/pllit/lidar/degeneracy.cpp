@@ -29,17 +29,58 @@ void add_direction(DegenerateDirections& directions, const Vector6& direction) {
   directions.col(directions.cols() - 1) = beyond.normalized();
 }
 
+/// Where planes say nothing of a shift, they say nothing of it at any attitude: what turning the eigenvector of a shift holds is noise.
+Vector6 without_noise(Vector6 direction) {
+  constexpr double mostly_shift = 0.9;
+  if (direction.tail<3>().norm() > mostly_shift) direction.head<3>().setZero();
+  return direction.normalized();
+}
+
+/// The held direction, moved a little towards the weakest one of this scan where that is near.
+Vector6 followed(const Vector6& held, const Eigen::SelfAdjointEigenSolver<Matrix6>& eigen, double rate) {
+  Vector6 now = without_noise(eigen.eigenvectors().col(0));
+  if (now.dot(held) < 0.0) now = -now;
+  constexpr double near = 0.98;
+  return now.dot(held) > near ? Vector6((held + rate * (now - held)).normalized()) : held;
+}
+
 DegenerateDirections unobserved_directions(const Information& information,
                                            const Eigen::SelfAdjointEigenSolver<Matrix6>& eigen,
                                            const DegenerateDirections& held, const DegeneracyConfig& config) {
   DegenerateDirections directions(6, 0);
   for (Eigen::Index i = 0; i < held.cols(); ++i)
     if (information.along(held.col(i)) < config.release * information.needed(held.col(i), config))
-      add_direction(directions, held.col(i));
+      add_direction(directions, followed(held.col(i), eigen, config.follow));
   for (int i = 0; i < 6; ++i)
     if (eigen.eigenvalues()[i] < information.needed(eigen.eigenvectors().col(i), config))
-      add_direction(directions, eigen.eigenvectors().col(i));
+      add_direction(directions, without_noise(eigen.eigenvectors().col(i)));
   return directions;
+}
+
+/// The states that an unobserved shift along a direction of W carries with it: position, velocity, gravity and accelerometer bias are
+/// known along it only through each other. An unobserved turn leaves heading and gyroscope bias alone.
+Eigen::Matrix<double, error_index::size, Eigen::Dynamic> in_error_state(const DegenerateDirections& directions, const SO3& R_W_I) {
+  namespace ix = error_index;
+  const Matrix3d to_I = R_W_I.rotation().transpose();
+  Eigen::Matrix<double, ix::size, Eigen::Dynamic> states(ix::size, 0);
+  const auto add = [&states](int row, const Vector3d& direction) {
+    Vector18 column = Vector18::Zero();
+    column.segment<3>(row) = direction;
+    column -= states * (states.transpose() * column);
+    if (column.norm() < 1e-3) return;
+    states.conservativeResize(ix::size, states.cols() + 1);
+    states.col(states.cols() - 1) = column.normalized();
+  };
+  for (Eigen::Index i = 0; i < directions.cols(); ++i) {
+    const Vector3d turn_W = directions.col(i).head<3>(), shift_W = directions.col(i).tail<3>();
+    if (shift_W.norm() > turn_W.norm()) {
+      for (const int row : {ix::p, ix::v, ix::g}) add(row, shift_W.normalized());
+      add(ix::ba, to_I * shift_W.normalized());
+    } else {
+      for (const int row : {ix::theta, ix::bg}) add(row, to_I * turn_W.normalized());
+    }
+  }
+  return states;
 }
 
 }  // namespace
@@ -70,6 +111,7 @@ ObservedEquations observed_part(const PlaneEquations& equations, const SO3& R_W_
   const Matrix6 observed = Matrix6::Identity() - result.unobserved * result.unobserved.transpose();
   result.sums.H.topLeftCorner<6, 6>() = S_inverse.transpose() * (observed * H * observed) * S_inverse;
   result.sums.b.head<6>() = S_inverse.transpose() * (observed * (S.transpose() * equations.sums.b.head<6>()));
+  result.sums.unobserved = in_error_state(result.unobserved, R_W_I);
   return result;
 }
 

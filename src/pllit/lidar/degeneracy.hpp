@@ -15,6 +15,8 @@ struct DegeneracyConfig {
   double min_share = 0.004;
   /// A direction that was not observed in the scan before must exceed both by this factor to count as observed again.
   double release = 3.0;
+  /// Share of the way that such a direction moves, each scan, towards the one that this scan shows.
+  double follow = 0.03;
 };
 
 /// Directions that a scan does not observe: one a column, unit vectors in metres, (theta x lever in W, p in W).

@@ -1,18 +1,48 @@
 #include "pllit/lidar/downsample.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace pllit {
 namespace {
 
-struct Taken {};
+/// Kept points of a voxel of twice the spacing; on surfaces there are at most about seven.
+struct Kept {
+  std::array<Vector3f, 8> points;
+  std::size_t count = 0;
+
+  bool full_or_near(const Vector3f& p, float spacing2_m2) const {
+    return count == points.size() ||
+           std::any_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count),
+                       [&](const Vector3f& q) { return (p - q).squaredNorm() < spacing2_m2; });
+  }
+};
 
 }  // namespace
 
-PointCloud downsample(const PointCloud& cloud, double voxel_m) {
-  VoxelTable<Taken> taken;
+PointCloud downsample(const PointCloud& cloud, double spacing_m) {
+  VoxelTable<Kept> table;
   PointCloud kept{.reference = cloud.reference, .points_I = {}, .intensity = {}};
+  const double inverse_m = 0.5 / spacing_m;
+  const auto spacing2_m2 = static_cast<float>(spacing_m * spacing_m);
   for (std::size_t i = 0; i < cloud.points_I.size(); ++i) {
-    if (!taken.insert(voxel_key(voxel_of(cloud.points_I[i], 1.0 / voxel_m))).second) continue;
-    kept.points_I.push_back(cloud.points_I[i]);
+    const Vector3f& p = cloud.points_I[i];
+    const Eigen::Vector3i voxel = voxel_of(p, inverse_m);
+    const Kept* own = table.find(voxel_key(voxel));
+    if (own && own->full_or_near(p, spacing2_m2)) continue;
+    // Points nearer than the spacing lie in this voxel or in those on the side of its centre where the point is.
+    Eigen::Vector3i side;
+    for (int k = 0; k < 3; ++k) side[k] = static_cast<double>(p[k]) * inverse_m - voxel[k] < 0.5 ? -1 : 1;
+    bool near = false;
+    for (int n = 1; n < 8 && !near; ++n) {
+      const Eigen::Vector3i step(n & 1 ? side.x() : 0, n & 2 ? side.y() : 0, n & 4 ? side.z() : 0);
+      const Kept* neighbour = table.find(voxel_key(voxel + step));
+      near = neighbour && neighbour->count < neighbour->points.size() && neighbour->full_or_near(p, spacing2_m2);
+    }
+    if (near) continue;
+    Kept& cell = *table.insert(voxel_key(voxel)).first;
+    cell.points[cell.count++] = p;
+    kept.points_I.push_back(p);
     kept.intensity.push_back(cloud.intensity[i]);
   }
   return kept;

@@ -12,8 +12,9 @@ struct ScanConfig {
   int max_matched = 2500;      ///< at most so many are matched
 };
 
-/// Keeps the first point of each voxel of the given size.
-PointCloud downsample(const PointCloud& cloud, double voxel_m);
+/// Keeps points at least `spacing_m` apart, the earlier ones first. (One point a voxel would do for less, but where a wall lies near
+/// the border of two voxels it favours the noisy points on the far side and so moves the wall.)
+PointCloud downsample(const PointCloud& cloud, double spacing_m);
 
 /// Keeps at most `count` points, evenly by index.
 PointCloud thin(PointCloud cloud, std::size_t count);

@@ -14,8 +14,8 @@ struct PlaneResidualConfig {
   double huber = 1.5;                ///< whitened residual at which the loss turns linear
   double gate = 3.0;                 ///< residuals beyond this many standard deviations, prior included, do not count
   double max_distance = 1.0;         ///< nor beyond this share of the plane's voxel
-  double max_information = 300.0;    ///< independent points that a scan may count for at most; 0: every point counts
-  double plane_points = 50.0;        ///< independent points that a plane may count for at most (its points share pose errors)
+  double max_information = 30.0;     ///< independent points that a scan may count for at most; 0: every point counts
+  double plane_points = 20.0;        ///< independent points that a plane may count for at most (its points share pose errors)
 };
 
 /// Normal equations of a scan, and how much of them may be noise.

@@ -143,6 +143,8 @@ void list(Section section, ScanConfig& config) {
 void list(Section section, DriftConfig& config) {
   section.add(PLLIT_KEY(gain), "How much more than independent errors the match errors of following scans add up.", "",
               {0.0, 1000.0});
+  section.add(PLLIT_KEY(shift_m), "Drift in position that no scan knows of itself, one sigma.", "m/sqrt(m)", {0.0, 1.0});
+  section.add(PLLIT_KEY(turn_rad), "Drift in attitude that no scan knows of itself, one sigma.", "rad/sqrt(m)", {0.0, 1.0});
 }
 
 void list(Section section, HealthConfig& config) {
@@ -163,6 +165,8 @@ void list(Section section, DegeneracyConfig& config) {
               "", {0.0, 1.0});
   section.add(PLLIT_KEY(release), "An unobserved direction must exceed both by this factor to be observed again.", "",
               {1.0, 1000.0});
+  section.add(PLLIT_KEY(follow), "Share of the way that an unobserved direction moves towards each scan's own.", "",
+              {0.0, 1.0});
 }
 
 void list_details(Section section, StartUpConfig& config) {

@@ -16,6 +16,9 @@ Matrix6 pose_covariance_W(const Estimate& estimate) {
 
 void MapDrift::move_to(const Vector3d& p_W) {
   covariance_W_ = carried(covariance_W_, p_W - p_W_);
+  const double way_m = (p_W - p_W_).norm();
+  covariance_W_.diagonal().head<3>().array() += config_.turn_rad * config_.turn_rad * way_m;
+  covariance_W_.diagonal().tail<3>().array() += config_.shift_m * config_.shift_m * way_m;
   p_W_ = p_W;
 }
 

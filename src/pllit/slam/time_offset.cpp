@@ -67,50 +67,82 @@ double spread_rps(std::span<const LidarRotation> rotations) {
   return std::sqrt(std::max(0.0, (square - mean.cwiseAbs2()).sum()));
 }
 
-Time middle_of(const LidarScan& scan) { return scan.start + (scan.end() - scan.start) / 2; }
+/// LiDAR-only odometry: constant velocity and rate from scan to scan, as no IMU may have a say.
+class LidarOdometry {
+ public:
+  LidarOdometry(const Rig& rig, const Config& config) : rig_(rig), config_(config), map_(config.map), arena_(config.threads > 0 ? config.threads : 2) {
+    estimate_.covariance.diagonal().setConstant(1e-6);
+  }
+
+  /// The rotation since the scan before, where both were matched.
+  std::optional<LidarRotation> add(const LidarScan& scan) {
+    const bool first = map_.voxels() == 0;
+    const Estimate before = estimate_;
+    if (!first) predict(scan.end());
+    estimate_.mean.time = scan.end();
+    const PointCloud cloud = downsample(deskewed(scan), config_.scan.insert_voxels * config_.map.voxel_m);
+    const bool matched = !first && match(cloud);
+    std::optional<LidarRotation> rotation;
+    const Vector3d angle_I = log_so3(before.mean.R_W_I.inverse() * estimate_.mean.R_W_I);
+    if (matched && last_matched_) rotation = LidarRotation{before.mean.time, scan.end(), angle_I};
+    if (matched) rate_I_ = angle_I / to_seconds(scan.end() - before.mean.time);
+    if (matched || first) {
+      map_.insert(cloud, estimate_.mean.T_W_I());
+      map_.slide(estimate_.mean.p_W);
+    }
+    last_matched_ = matched || first;
+    return rotation;
+  }
+
+ private:
+  void predict(Time until) {
+    const double dt = to_seconds(until - estimate_.mean.time);
+    estimate_ = propagate(estimate_, {}, until, rig_.imu, free_motion).predicted;
+    estimate_.mean.R_W_I = estimate_.mean.R_W_I * exp_so3(rate_I_ * dt);
+  }
+
+  PointCloud deskewed(const LidarScan& scan) const {
+    PathNode node{.time = scan.start, .R_W_I = SO3::Identity(), .p_W = Vector3d::Zero(), .v_W = estimate_.mean.R_W_I.inverse().act(estimate_.mean.v_W),
+                  .omega_I = rate_I_, .accel_W = Vector3d::Zero()};
+    PathNode end = node;
+    const SE3 T_start_end = extrapolate(node, to_seconds(scan.end() - scan.start));
+    end.time = scan.end();
+    end.R_W_I = rotation_from(T_start_end.quat());
+    end.p_W = T_start_end.translation();
+    return deskew(scan, MotionPath{{node, end}}, rig_.T_I_L, rig_.lidar);
+  }
+
+  bool match(const PointCloud& cloud) {
+    const PointCloud points = thin(cloud, static_cast<std::size_t>(config_.scan.max_matched));
+    PlaneResiduals residuals(points, map_, rig_, estimate_.covariance.topLeftCorner<6, 6>(), config_.planes, arena_);
+    const auto linearize = [&](const NavState& x) { return observed_part(residuals(x), x.R_W_I, {}, config_.degeneracy).sums; };
+    const UpdateResult update = iterated_update(estimate_, linearize, config_.filter);
+    if (!match_accepted(update.last, config_.health)) return false;
+    estimate_ = update.posterior;
+    return true;
+  }
+
+  const Rig& rig_;
+  const Config& config_;
+  PlaneMap map_;
+  Arena arena_;
+  Estimate estimate_;
+  Vector3d rate_I_ = Vector3d::Zero();
+  bool last_matched_ = false;
+};
 
 }  // namespace
 
 std::vector<LidarRotation> lidar_rotations(std::span<const LidarScan> scans, const Rig& rig, const Config& config) {
   std::vector<LidarRotation> rotations;
-  PlaneMap map(config.map);
-  Arena arena(config.threads > 0 ? config.threads : 2);
-  Estimate estimate;
-  estimate.covariance.diagonal().setConstant(1e-6);
-  std::optional<Estimate> last;  // of the last matched scan
-  Time last_middle;
-  for (const LidarScan& scan : scans) {
-    const Time middle = middle_of(scan);
-    if (map.voxels() > 0) estimate = propagate(estimate, {}, middle, rig.imu, free_motion).predicted;
-    estimate.mean.time = middle;
-    // Without a gyroscope there is no de-skew: all points count as measured in the middle of the sweep.
-    const MotionPath still{{PathNode{scan.start, SO3::Identity(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}}};
-    const PointCloud cloud = downsample(deskew(scan, still, rig.T_I_L, rig.lidar), config.scan.insert_voxels * config.map.voxel_m);
-    bool matched = false;
-    if (map.voxels() > 0) {
-      const PointCloud points = thin(cloud, static_cast<std::size_t>(config.scan.max_matched));
-      PlaneResiduals residuals(points, map, rig, estimate.covariance.topLeftCorner<6, 6>(), config.planes, arena);
-      const auto update = iterated_update(
-          estimate, [&](const NavState& x) { return observed_part(residuals(x), x.R_W_I, {}, config.degeneracy).sums; }, config.filter);
-      matched = match_accepted(update.last, config.health);
-      if (matched) estimate = update.posterior;
-    }
-    if (matched && last)
-      rotations.push_back({last_middle, middle, log_so3(last->mean.R_W_I.inverse() * estimate.mean.R_W_I)});
-    if (matched || map.voxels() == 0) {
-      map.insert(cloud, estimate.mean.T_W_I());
-      map.slide(estimate.mean.p_W);
-      last = estimate;
-      last_middle = middle;
-    } else {
-      last.reset();
-    }
-  }
+  LidarOdometry odometry(rig, config);
+  for (const LidarScan& scan : scans)
+    if (const auto rotation = odometry.add(scan)) rotations.push_back(*rotation);
   return rotations;
 }
 
 TimeOffset estimate_time_offset(std::span<const ImuSample> imu, std::span<const LidarRotation> rotations, double range_s) {
-  constexpr double min_spread_rps = 0.03, step_s = 0.005;
+  constexpr double min_spread_rps = 0.03, step_s = 0.001;
   TimeOffset result;
   if (imu.size() < 10 || rotations.size() < 20) {
     result.reason = "too few scans and IMU samples that belong together";

@@ -15,6 +15,14 @@ Matrix18 on_rotation(const Matrix3d& block) {
   return m;
 }
 
+/// Covariance after a gain that leaves the unobserved directions alone (Schmidt 1966; Joseph's form, valid for any gain).
+/// `optimal`: covariance after the full gain K = optimal H' R^-1, so that K R K' = optimal (H'R^-1 H) optimal.
+Matrix18 after_partial_gain(const Matrix18& prior, const Matrix18& optimal, const NormalEquations& sums) {
+  const Matrix18 observed = Matrix18::Identity() - sums.unobserved * sums.unobserved.transpose();
+  const Matrix18 kept = Matrix18::Identity() - observed * optimal * sums.H;
+  return kept * prior * kept.transpose() + observed * optimal * sums.H * optimal * observed;
+}
+
 }  // namespace
 
 UpdateResult iterated_update(const Estimate& prior, const Linearize& linearize, const FilterConfig& config) {
@@ -31,11 +39,16 @@ UpdateResult iterated_update(const Estimate& prior, const Linearize& linearize, 
     const Matrix18 P = J * prior.covariance * J.transpose();
     // (P^-1 + H) dx = b - P^-1 J d, multiplied by P from the left so that P need not be inverted.
     const Eigen::PartialPivLU<Matrix18> system(Matrix18::Identity() + P * result.last.H);
-    const Vector18 step = system.solve(P * result.last.b - J * d);
+    Vector18 step = system.solve(P * result.last.b - J * d);
+    Matrix18 posterior = system.solve(P);
+    if (const auto& unobserved = result.last.unobserved; unobserved.cols() > 0) {
+      step -= unobserved * (unobserved.transpose() * (step + d));
+      posterior = after_partial_gain(P, posterior, result.last);
+    }
     x = boxplus(x, step);
 
     const Matrix18 L = on_rotation(right_jacobian(step.segment<3>(ix::theta)));
-    covariance = L * system.solve(P) * L.transpose();
+    covariance = L * posterior * L.transpose();
     result.converged = step.segment<3>(ix::theta).norm() < config.rotation_tolerance_rad &&
                        step.segment<3>(ix::p).norm() < config.position_tolerance_m;
   }

@@ -14,6 +14,9 @@ struct NormalEquations {
   double squared_m2 = 0.0; ///< sum of squared residuals of the inliers, not whitened
   int candidates = 0;      ///< residuals that were tried
   int inliers = 0;         ///< residuals that count
+  /// Directions of the error state (orthonormal columns) that the sensor does not observe: an update leaves them, mean and
+  /// covariance, to the prior, although noise in H may say something about them.
+  Eigen::Matrix<double, error_index::size, Eigen::Dynamic> unobserved{error_index::size, 0};
 
   NormalEquations& operator+=(const NormalEquations& other) {
     H += other.H;

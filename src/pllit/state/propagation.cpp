@@ -13,6 +13,14 @@ struct Input {
   Vector3d gyro_rps, accel_mps2;
 };
 
+/// How long the IMU was silent around an instant: between the samples on both sides, or since or until the only one.
+Duration silence_around(std::span<const ImuSample> imu, Time time) {
+  const auto after = std::ranges::upper_bound(imu, time, {}, &ImuSample::time);
+  if (after == imu.end()) return time - imu.back().time;
+  if (after == imu.begin()) return after->time - time;
+  return after->time - (after - 1)->time;
+}
+
 Input interpolate(const ImuSample& a, const ImuSample& b, Time time) {
   const double s = to_seconds(time - a.time) / to_seconds(b.time - a.time);
   return {time, (1.0 - s) * a.gyro_rps + s * b.gyro_rps, (1.0 - s) * a.accel_mps2 + s * b.accel_mps2};
@@ -126,8 +134,10 @@ Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time
     for (std::size_t i = 0; i + 1 < inputs.size(); ++i) {
       const Duration dt = inputs[i + 1].time - inputs[i].time;
       if (dt <= Duration{0}) continue;
-      result.longest_gap = std::max(result.longest_gap, dt);
-      if (dt > gaps.max_gap) {
+      // Asked just inside the step's end: a last sample that is held for long becomes a gap, however short the packets.
+      const Duration silence = silence_around(imu, inputs[i + 1].time - Duration{1});
+      result.longest_gap = std::max(result.longest_gap, silence);
+      if (silence > gaps.max_gap) {
         result.path.nodes.push_back(node_of(now.mean, Vector3d::Zero(), Vector3d::Zero()));
         cross_gap(now, dt, gaps);
         continue;
