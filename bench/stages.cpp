@@ -19,7 +19,8 @@ struct Scene {
 
 Scene make_scene() {
   auto simulation = open_simulation("sim:room?seed=1&duration=10");
-  Scene scene{.rig = simulation->rig()};
+  Scene scene;
+  scene.rig = simulation->rig();
   PacketAssembler assembler(scene.rig);
   while (const auto event = simulation->next().value()) {
     if (const auto* imu = std::get_if<ImuSample>(&event->data)) assembler.push(*imu);
