@@ -16,13 +16,12 @@ double percentile(std::vector<double> values, double share) {
   return *nth;
 }
 
-/// Samples with ascending, finite values, in m/s2.
-std::vector<ImuSample> clean(const std::vector<ImuSample>& imu, double scale) {
+/// The samples with ascending stamps and finite values.
+std::vector<ImuSample> clean(const std::vector<ImuSample>& imu) {
   std::vector<ImuSample> result;
-  for (ImuSample sample : imu) {
+  for (const ImuSample& sample : imu) {
     if (!sample.gyro_rps.allFinite() || !sample.accel_mps2.allFinite()) continue;
     if (!result.empty() && sample.time <= result.back().time) continue;
-    sample.accel_mps2 *= scale;
     result.push_back(sample);
   }
   return result;
@@ -82,7 +81,7 @@ Inspection Inspector::finish() const {
   judge(inspection);
   if (inspection.problems.empty()) {
     const auto rotations = lidar_rotations(scans_, rig_, config_);
-    inspection.imu_to_lidar = estimate_time_offset(clean(imu_, 1.0), rotations);
+    inspection.imu_to_lidar = estimate_time_offset(clean(imu_), rotations);
     const TimeOffset& offset = inspection.imu_to_lidar;
     const double configured_s = to_seconds(rig_.lidar_delay);
     if (offset.found && std::abs(offset.offset_s - configured_s) > std::max(0.02, 0.5 / inspection.imu.rate_hz))
@@ -96,7 +95,7 @@ Inspection Inspector::finish() const {
 
 void Inspector::judge_imu(Inspection& inspection) const {
   if (imu_.size() < 10) return;
-  auto first = clean(imu_, 1.0);
+  auto first = clean(imu_);
   const Time end = first.empty() ? Time{} : first.front().time + from_seconds(config_.start.window_s);
   first.erase(std::ranges::find_if(first, [end](const ImuSample& s) { return s.time > end; }), first.end());
   if (first.size() < 5) return;

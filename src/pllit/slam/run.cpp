@@ -41,9 +41,9 @@ class Run {
   Expected<void> drain(bool all) {
     while (auto packet = all ? assembler_.flush() : assembler_.pop()) {
       ++packets_;
-      const auto frames = odometry_.process(std::move(*packet));
+      auto frames = odometry_.process(std::move(*packet));
       if (!frames) return std::unexpected(frames.error());
-      for (const FrameEstimate& frame : *frames)
+      for (FrameEstimate& frame : *frames)
         if (const auto taken = take(frame); !taken) return taken;
       if (hooks_.stop.stop_requested()) break;
     }
@@ -57,11 +57,10 @@ class Run {
                                    "scans with IMU data", packets_));
   }
 
-  Expected<void> take(const FrameEstimate& frame) {
-    FrameEstimate timed = frame;
-    timed.stage_ms[static_cast<std::size_t>(Stage::read)] = std::exchange(read_ms_, 0.0);
-    add_to_summary(timed);
-    return hooks_.sink(timed);
+  Expected<void> take(FrameEstimate& frame) {
+    frame.stage_ms[static_cast<std::size_t>(Stage::read)] = std::exchange(read_ms_, 0.0);
+    add_to_summary(frame);
+    return hooks_.sink(frame);
   }
 
   void add_to_summary(const FrameEstimate& frame) {

@@ -10,8 +10,6 @@
 namespace pllit {
 namespace {
 
-namespace ix = error_index;
-
 /// Motion that a hand-held or driven rig may have between two scans when nothing measures it.
 constexpr GapModel free_motion{.max_gap = Duration{0}, .accel_sigma_mps2 = 10.0, .rate_sigma_rps = 1.5};
 
