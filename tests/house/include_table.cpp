@@ -41,7 +41,8 @@ TEST(House, NoFolderIncludesOneThatItsArrowsDoNotAllow) {
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(PLLIT_SOURCE_DIR) / "src/pllit")) {
     if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
     ++files;
-    const std::string folder = entry.path().parent_path().filename();
+    // The first folder below pllit/ counts: a room may have alcoves of its own.
+    const std::string folder = entry.path().lexically_relative(fs::path(PLLIT_SOURCE_DIR) / "src/pllit").begin()->string();
     ASSERT_TRUE(table.contains(folder)) << folder << " has no row in the table";
     for (const std::string& other : included_folders(entry.path()))
       EXPECT_TRUE(other == folder || table.at(folder).contains(other))

@@ -109,6 +109,64 @@ TEST(Propagate, CovarianceMatchesTheSpreadOfNoisyRuns) {
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(spread(i, i) / predicted.covariance(i, i), 1.0, 0.12) << "axis " << i;
 }
 
+TEST(Sweep, CovariancesMatchTheSpreadOfNoisyRuns) {
+  // Twin: the mean over the sweep of where each instant's pose error would put the end, and the error of the end itself.
+  Random random(6);
+  const double rate_hz = 100.0;
+  ImuNoise noise;
+  noise.gyro_density = 0.01;
+  noise.accel_density = 0.1;
+  Estimate start;
+  start.mean = random.state();
+  start.mean.time = Time{};
+  start.mean.v_W = Vector3d(5.0, 0.0, 0.0);
+  const Vector3d gyro(0.3, -0.2, 0.5), accel(1.0, 0.5, 9.0);
+  const auto clean = constant_imu(gyro, accel, rate_hz, 0.3);
+  const Propagation predicted = propagate(start, clean, Time(300ms), noise, {}, Time(100ms));
+  const auto steps = clean.size() - 1;
+  Eigen::Matrix<double, 12, 12> spread = Eigen::Matrix<double, 12, 12>::Zero();
+  constexpr int runs = 4000;
+  for (int run = 0; run < runs; ++run) {
+    NavState truth = start.mean;
+    Vector6 mean_error = Vector6::Zero();
+    for (std::size_t i = 0; i <= steps; ++i) {
+      if (i >= 10) {  // the end as the predicted motion from here would give it, trapezoidally averaged
+        const double share = (i == 10 || i == steps ? 0.5 : 1.0) / static_cast<double>(steps - 10);
+        const SE3 end = truth.T_W_I() * predicted.path.pose_at(truth.time).inverse() * predicted.predicted.mean.T_W_I();
+        mean_error.head<3>() += share * log_so3(predicted.predicted.mean.R_W_I.inverse() * end.asSO3());
+        mean_error.tail<3>() += share * (end.translation() - predicted.predicted.mean.p_W);
+      }
+      if (i < steps)
+        truth = imu_step(truth, gyro + random.vector(noise.gyro_density * std::sqrt(rate_hz)),
+                         accel + random.vector(noise.accel_density * std::sqrt(rate_hz)), 10ms)
+                    .state;
+    }
+    Eigen::Matrix<double, 12, 1> both;
+    both << mean_error, boxminus(truth, predicted.predicted.mean).head<6>();
+    spread += both * both.transpose() / runs;
+  }
+  Eigen::Matrix<double, 12, 12> claimed;
+  claimed << predicted.sweep.estimate.covariance.topLeftCorner<6, 6>(), predicted.sweep.with_end.topLeftCorner<6, 6>().transpose(),
+      predicted.sweep.with_end.topLeftCorner<6, 6>(), predicted.predicted.covariance.topLeftCorner<6, 6>();
+  for (int i = 0; i < 12; ++i)
+    for (int j = 0; j < 12; ++j)
+      EXPECT_NEAR(spread(i, j), claimed(i, j), 0.1 * std::sqrt(claimed(i, i) * claimed(j, j))) << i << ", " << j;
+}
+
+TEST(Sweep, OfAnInstantLeavesTheUpdateAsItIs) {
+  Random random(7);
+  Estimate start;
+  start.mean = random.state();
+  start.mean.time = Time{};
+  start.covariance = 0.01 * Matrix18::Identity();
+  const auto imu = constant_imu({0.3, -0.2, 0.5}, {1.0, 0.5, 9.0}, 100.0, 0.1);
+  const Propagation motion = propagate(start, imu, Time(100ms), ImuNoise{});
+  Estimate posterior{.mean = boxplus(motion.predicted.mean, Vector18::Constant(0.01)), .covariance = 0.5 * motion.predicted.covariance};
+  const Estimate end = at_end(motion.sweep, motion.predicted, posterior);
+  EXPECT_LT(boxminus(end.mean, posterior.mean).norm(), 1e-9);
+  EXPECT_LT((end.covariance - posterior.covariance).norm(), 1e-9);
+}
+
 TEST(Propagate, GoesStraightOnThroughAGapAndDoubtsIt) {
   Estimate start;
   start.mean.v_W = Vector3d(2.0, 0.0, 0.0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace pllit {
 namespace {
@@ -18,6 +19,18 @@ struct Kept {
   }
 };
 
+/// Each number below 2^bits once, in an order without a direction: odd multiplications and shifts can be undone, so none is lost.
+std::size_t scattered(std::size_t i, int bits) {
+  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  const int half = (bits + 1) / 2;
+  std::uint64_t x = i;
+  for (int round = 0; round < 2; ++round) {
+    x = (x * 0x9e3779b97f4a7c15 + 0x7f4a7c15) & mask;
+    x ^= x >> half;
+  }
+  return x;
+}
+
 }  // namespace
 
 PointCloud downsample(const PointCloud& cloud, double spacing_m) {
@@ -25,7 +38,11 @@ PointCloud downsample(const PointCloud& cloud, double spacing_m) {
   PointCloud kept{.reference = cloud.reference, .points_I = {}, .intensity = {}};
   const double inverse_m = 0.5 / spacing_m;
   const auto spacing2_m2 = static_cast<float>(spacing_m * spacing_m);
-  for (std::size_t i = 0; i < cloud.points_I.size(); ++i) {
+  const std::size_t count = cloud.points_I.size();
+  const int bits = std::bit_width(count);
+  for (std::size_t visit = 0; visit < std::size_t{1} << bits; ++visit) {
+    const std::size_t i = scattered(visit, bits);
+    if (i >= count) continue;
     const Vector3f& p = cloud.points_I[i];
     const Eigen::Vector3i voxel = voxel_of(p, inverse_m);
     const Kept* own = table.find(voxel_key(voxel));

@@ -12,8 +12,9 @@ struct ScanConfig {
   int max_matched = 2500;      ///< at most so many are matched
 };
 
-/// Keeps points at least `spacing_m` apart, the earlier ones first. (One point a voxel would do for less, but where a wall lies near
-/// the border of two voxels it favours the noisy points on the far side and so moves the wall.)
+/// Keeps points at least `spacing_m` apart. Points are visited in a fixed scattered order: along the scan, the next one kept would be the
+/// first whose noise takes it far enough from the last one, which turns every slanting wall in the scanner's sense. (One point a voxel
+/// would do for less, but where a wall lies near the border of two voxels it favours the noisy points on the far side and so moves it.)
 PointCloud downsample(const PointCloud& cloud, double spacing_m);
 
 /// Keeps at most `count` points, evenly by index.

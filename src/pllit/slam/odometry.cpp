@@ -40,7 +40,8 @@ FrameEstimate Odometry::step(const SensorPacket& packet) {
   FrameEstimate frame;
   FrameFacts& facts = frame.facts;
 
-  const Propagation motion = propagate(estimate_, in_si_units(packet.imu), packet.end, rig_.imu, config_.gaps);
+  const Propagation motion = propagate(estimate_, in_si_units(packet.imu), packet.end, rig_.imu, config_.gaps,
+                                       packet.scan ? std::optional(packet.scan->start) : std::nullopt);
   estimate_ = motion.predicted;
   clock.charge(Stage::propagate);
 
@@ -52,11 +53,11 @@ FrameEstimate Odometry::step(const SensorPacket& packet) {
                                    static_cast<std::size_t>(config_.scan.max_matched));
     clock.charge(Stage::deskew);
 
-    const UpdateResult lidar = match(motion.predicted, sparse, facts);
-    estimate_ = lidar.posterior;
+    const UpdateResult lidar = match(motion.sweep.estimate, sparse, facts);
+    estimate_ = at_end(motion.sweep, motion.predicted, lidar.posterior);
     clock.charge(Stage::lidar);
 
-    extend_map(dense, facts);  // once, from the frame's final posterior
+    extend_map(dense, lidar.posterior.mean.T_W_I(), facts);  // once, where the whole scan lies best
     clock.charge(Stage::map);
   }
   facts.speed_mps = estimate_.mean.v_W.norm();
@@ -95,7 +96,7 @@ UpdateResult Odometry::match(const Estimate& predicted, const PointCloud& points
   return result;
 }
 
-void Odometry::extend_map(const PointCloud& points, FrameFacts& facts) {
+void Odometry::extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts& facts) {
   unmatched_ = facts.matched || facts.map_empty ? 0 : unmatched_ + 1;
   if (unmatched_ >= config_.health.restart_after) {
     // The old map does not help any more. The new one begins at the predicted pose and inherits its error.
@@ -112,7 +113,7 @@ void Odometry::extend_map(const PointCloud& points, FrameFacts& facts) {
   last_match_ = estimate_.mean.time;
   drift_.move_to(estimate_.mean.p_W);
   if (facts.matched) drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points);
-  map_.insert(points, estimate_.mean.T_W_I());
+  map_.insert(points, T_W_I);
   map_.slide(estimate_.mean.p_W);
 }
 

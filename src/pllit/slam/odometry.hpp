@@ -45,7 +45,7 @@ class Odometry {
   Start with_settled_velocity(Start start) const;
   FrameEstimate step(const SensorPacket& packet);
   UpdateResult match(const Estimate& predicted, const PointCloud& points, FrameFacts& facts);
-  void extend_map(const PointCloud& points, FrameFacts& facts);
+  void extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts& facts);
   std::vector<ImuSample> in_si_units(std::vector<ImuSample> imu) const;
 
   Rig rig_;

@@ -1,6 +1,7 @@
 // Forward propagation with the IMU: the paper's eqs. (2)-(6).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,9 +41,18 @@ struct MotionPath {
 /// Where a node's motion leads after dt (which may be negative).
 SE3 extrapolate(const PathNode& node, double dt_s);
 
+/// What a scan measures. Its points are taken all along a sweep and brought to its end by the predicted motion, with that motion's errors:
+/// matched together they tell the mean pose error of the sweep (seen from its end), not the one at its end. Noise of the IMU during the
+/// sweep is in both, which a filter that takes one for the other counts as new information.
+struct SweepPrediction {
+  Estimate estimate;                    ///< the predicted end, its pose error replaced by the mean over the sweep
+  Matrix18 with_end = Matrix18::Zero();  ///< covariance of the error at the end (rows) with the estimate's (columns)
+};
+
 struct Propagation {
   MotionPath path;
   Estimate predicted;     ///< at `until`
+  SweepPrediction sweep;  ///< of the sweep that ends there
   Duration longest_gap;   ///< longest stretch without an IMU sample
 };
 
@@ -56,8 +66,13 @@ struct GapModel {
 
 /// Propagates `from` to `until`. `imu` ascends in time, in SI units; the last sample at or before from.time and the first one
 /// at or after `until` should be among them (values between samples are interpolated linearly, and held where a side is
-/// missing). Noise densities are discretised by the length of each step, so any sample rate serves.
+/// missing). Noise densities are discretised by the length of each step, so any sample rate serves. A sweep goes evenly from
+/// `sweep_begin` (or from.time, where that is later) to `until`; without one it is the instant `until`.
 Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time until, const ImuNoise& noise,
-                      const GapModel& gaps = {});
+                      const GapModel& gaps = {}, std::optional<Time> sweep_begin = std::nullopt);
+
+/// The estimate at the end of a sweep, given what has been learnt of the sweep: as a smoother carries news from one state to another
+/// that is correlated with it (Rauch, Tung and Striebel 1965).
+Estimate at_end(const SweepPrediction& sweep, const Estimate& end, const Estimate& posterior);
 
 }  // namespace pllit
