@@ -26,12 +26,12 @@ Recorded recorded(const std::string& address, Duration lidar_late_by) {
   return data;
 }
 
-TEST(TimeOffset, IsFoundToAThirdOfAScan) {
+TEST(TimeOffset, IsFoundToThreeMilliseconds) {
   for (const int offset_ms : {-120, 0, 37, 210}) {
     const Recorded data = recorded("sim:room?duration=20&lidar=ring16&seed=3", std::chrono::milliseconds(-offset_ms));
     const TimeOffset offset = estimate_time_offset(data.imu, lidar_rotations(data.scans, data.rig, {}));
     ASSERT_TRUE(offset.found) << offset.reason;
-    EXPECT_NEAR(offset.offset_s, offset_ms * 1e-3, 0.033);
+    EXPECT_NEAR(offset.offset_s, offset_ms * 1e-3, 0.003);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <format>
 #include <limits>
+#include <utility>
 
 #include "pllit/base/arena.hpp"
 
@@ -65,6 +66,23 @@ double spread_rps(std::span<const LidarRotation> rotations) {
   return std::sqrt(std::max(0.0, (square - mean.cwiseAbs2()).sum()));
 }
 
+Time middle_of(const LidarScan& scan) { return scan.start + (scan.end() - scan.start) / 2; }
+
+/// Mean rate of the rotations that end and begin at a time.
+std::optional<Vector3d> rate_around(Time time, std::span<const LidarRotation> rotations) {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  const auto add = [&](const LidarRotation& r) {
+    sum += r.angle_I / to_seconds(r.to - r.from);
+    ++count;
+  };
+  const auto ending = std::ranges::lower_bound(rotations, time, {}, &LidarRotation::to);
+  const auto beginning = std::ranges::lower_bound(rotations, time, {}, &LidarRotation::from);
+  if (ending != rotations.end() && ending->to == time) add(*ending);
+  if (beginning != rotations.end() && beginning->from == time) add(*beginning);
+  return count > 0 ? std::optional<Vector3d>(sum / count) : std::nullopt;
+}
+
 /// LiDAR-only odometry: constant velocity and rate from scan to scan, as no IMU may have a say.
 class LidarOdometry {
  public:
@@ -72,23 +90,28 @@ class LidarOdometry {
     estimate_.covariance.diagonal().setConstant(1e-6);
   }
 
-  /// The rotation since the scan before, where both were matched.
-  std::optional<LidarRotation> add(const LidarScan& scan) {
+  /// The rotation since the scan before, where both were matched. A scan tells the mean pose of its sweep, so it is one from the middle
+  /// of a sweep to the middle of the next.
+  /// `known_rate`: of the sweep, from an earlier pass; else the last one is taken.
+  std::optional<LidarRotation> add(const LidarScan& scan, const std::optional<Vector3d>& known_rate) {
+    if (known_rate) rate_I_ = *known_rate;
     const bool first = map_.voxels() == 0;
-    const Estimate before = estimate_;
     if (!first) predict(scan.end());
     estimate_.mean.time = scan.end();
     const PointCloud cloud = downsample(deskewed(scan), config_.scan.insert_voxels * config_.map.voxel_m);
     const bool matched = !first && match(cloud);
-    std::optional<LidarRotation> rotation;
-    const Vector3d angle_I = log_so3(before.mean.R_W_I.inverse() * estimate_.mean.R_W_I);
-    if (matched && last_matched_) rotation = LidarRotation{before.mean.time, scan.end(), angle_I};
-    if (matched) rate_I_ = angle_I / to_seconds(scan.end() - before.mean.time);
-    if (matched || first) {
-      map_.insert(cloud, estimate_.mean.T_W_I());
-      map_.slide(estimate_.mean.p_W);
+    if (!matched && !first) {
+      last_.reset();
+      return std::nullopt;
     }
-    last_matched_ = matched || first;
+    map_.insert(cloud, estimate_.mean.T_W_I());
+    map_.slide(estimate_.mean.p_W);
+    const double to_middle_s = to_seconds(middle_of(scan) - scan.end());
+    const Orientation middle{middle_of(scan), estimate_.mean.R_W_I * exp_so3(rate_I_ * to_middle_s)};
+    const auto before = std::exchange(last_, middle);
+    if (!before) return std::nullopt;
+    const LidarRotation rotation{before->time, middle.time, log_so3(before->R_W_I.inverse() * middle.R_W_I)};
+    rate_I_ = rotation.angle_I / to_seconds(rotation.to - rotation.from);
     return rotation;
   }
 
@@ -126,16 +149,26 @@ class LidarOdometry {
   Arena arena_;
   Estimate estimate_;
   Vector3d rate_I_ = Vector3d::Zero();
-  bool last_matched_ = false;
+  struct Orientation {
+    Time time;
+    SO3 R_W_I;
+  };
+  std::optional<Orientation> last_;  ///< in the middle of the last sweep, where it was matched
 };
 
 }  // namespace
 
 std::vector<LidarRotation> lidar_rotations(std::span<const LidarScan> scans, const Rig& rig, const Config& config) {
   std::vector<LidarRotation> rotations;
-  LidarOdometry odometry(rig, config);
-  for (const LidarScan& scan : scans)
-    if (const auto rotation = odometry.add(scan)) rotations.push_back(*rotation);
+  std::vector<std::optional<Vector3d>> rates(scans.size());
+  // The rate of the last scan lags behind; the mean of those on both sides, known in the next pass, does not.
+  for (int pass = 0; pass < 3; ++pass) {
+    rotations.clear();
+    LidarOdometry odometry(rig, config);
+    for (std::size_t i = 0; i < scans.size(); ++i)
+      if (const auto rotation = odometry.add(scans[i], rates[i])) rotations.push_back(*rotation);
+    for (std::size_t i = 0; i < scans.size(); ++i) rates[i] = rate_around(middle_of(scans[i]), rotations);
+  }
   return rotations;
 }
 

@@ -12,7 +12,7 @@ namespace pllit {
 
 /// Rotation of the rig from one scan to the next, in I, as the LiDAR alone sees it.
 struct LidarRotation {
-  Time from, to;      ///< ends of the two sweeps, LiDAR clock
+  Time from, to;      ///< middles of the two sweeps, LiDAR clock
   Vector3d angle_I;   ///< rad
 };
 
