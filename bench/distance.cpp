@@ -20,7 +20,7 @@ double resident_mb() {
 
 int main(int argc, char** argv) {
   using namespace pllit;
-  const std::string address = argc > 1 ? argv[1] : "sim:corridor?duration=340&speed=3&lidar=ring16";
+  const std::string address = argc > 1 ? argv[1] : "sim:box_corridor?duration=340&speed=3&lidar=ring16";
   auto simulation = open_simulation(address);
   if (!simulation) {
     std::fprintf(stderr, "%s\n", simulation.error().message.c_str());

@@ -18,7 +18,7 @@ struct Scene {
 };
 
 Scene make_scene() {
-  auto simulation = open_simulation("sim:room?seed=1&duration=10");
+  auto simulation = open_simulation("sim:box_room?seed=1&duration=10");
   Scene scene;
   scene.rig = simulation->rig();
   PacketAssembler assembler(scene.rig);

@@ -6,7 +6,7 @@
 #include <ranges>
 #include <vector>
 
-#include "pllit/slam/config_suggest.hpp"
+#include "pllit/base/words.hpp"
 
 namespace pllit::app {
 namespace {

@@ -33,6 +33,7 @@ Verb add_doctor(CLI::App& program);
 Verb add_eval(CLI::App& program);
 Verb add_export(CLI::App& program);
 Verb add_run(CLI::App& program);
+Verb add_simulate(CLI::App& program);
 
 /// Logs the error to stderr and gives the exit code of its kind.
 ExitCode report(const Error& error);

@@ -1,9 +1,12 @@
 #include "source.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <format>
 
 #include "pllit/io/bag_reader.hpp"
-#include "pllit/sim/simulation.hpp"
+#include "pllit/io/tum.hpp"
+#include "pllit/sim/sequences.hpp"
 #include "pllit/slam/config_presets.hpp"
 #include "pllit/slam/config_yaml.hpp"
 
@@ -21,8 +24,8 @@ std::optional<TimeUnit> point_time_unit(PointTimeUnit unit) {
   return std::nullopt;
 }
 
-Expected<OpenedSource> open_simulator(const std::string& address) {
-  auto simulation = open_simulation(address);
+Expected<OpenedSource> open_simulator(const std::string& address, Images images) {
+  auto simulation = open_simulation_with_files(address, images);
   if (!simulation) return std::unexpected(simulation.error());
   OpenedSource opened{.events = nullptr, .rig = simulation->rig(), .truth = simulation->truth(), .name = address};
   opened.events = std::make_unique<Simulation>(std::move(*simulation));
@@ -41,16 +44,46 @@ Expected<OpenedSource> open_recording(const std::vector<std::string>& sources, c
       .events = std::move(*bags), .rig = make_rig(config.rig), .truth = {}, .name = paths.front().stem().string()};
 }
 
+/// Where a motion's file lies: as it is named, or among the recordings.
+Expected<std::filesystem::path> motion_file(const std::filesystem::path& name) {
+  std::vector<std::filesystem::path> places{name};
+  if (const char* data = std::getenv("PLLIT_DATA")) places.push_back(std::filesystem::path(data) / "trajectories" / name);
+  places.push_back(std::filesystem::path("../shared/data/trajectories") / name);
+  std::string tried;
+  for (const auto& place : places) {
+    if (std::filesystem::is_regular_file(place)) return place;
+    tried += (tried.empty() ? "" : ", ") + place.string();
+  }
+  return input_error(std::format("the motion's file is missing; looked for {} (the folder can be set with PLLIT_DATA)", tried));
+}
+
 }  // namespace
 
 bool is_simulation(const std::vector<std::string>& sources) {
   return std::ranges::any_of(sources, [](const std::string& source) { return source.starts_with("sim:"); });
 }
 
+Expected<Simulation> open_simulation_with_files(const std::string& address, Images images) {
+  const auto expanded = expanded_address(address);
+  if (!expanded) return std::unexpected(expanded.error());
+  auto config = parse_sim_config(*expanded);
+  if (!config) return std::unexpected(config.error());
+  if (images == Images::skipped) config->images = SimConfig::Images::none;
+  std::optional<Trajectory> path;
+  if (!config->motion.empty()) {
+    const auto file = motion_file(config->motion);
+    if (!file) return std::unexpected(file.error());
+    auto read = read_tum(*file);
+    if (!read) return std::unexpected(read.error());
+    path = std::move(*read);
+  }
+  return Simulation::make(*config, path);
+}
+
 Expected<OpenedSource> open_source(const std::vector<std::string>& sources, const Config& config, Images images) {
   if (!is_simulation(sources)) return open_recording(sources, config, images);
   if (sources.size() > 1) return input_error("a simulation stands alone: give one sim: address, or bags");
-  return open_simulator(sources.front());
+  return open_simulator(sources.front(), images);
 }
 
 Expected<Config> read_config(const std::string& name_or_path, const std::vector<std::string>& settings) {

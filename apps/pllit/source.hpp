@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "pllit/slam/config.hpp"
 #include "pllit/sensor/measurements.hpp"
+#include "pllit/sim/simulation.hpp"
+#include "pllit/slam/config.hpp"
 #include "pllit/state/trajectory.hpp"
 
 namespace pllit::app {
@@ -23,6 +24,8 @@ enum class Images { skipped, wanted };
 
 /// Opens `sim:...` or the bags. The simulator brings its own rig, as its data sheets say; a recording takes the configuration's.
 Expected<OpenedSource> open_source(const std::vector<std::string>& sources, const Config& config, Images images = Images::skipped);
+/// Opens `sim:...` and reads the file that it names.
+Expected<Simulation> open_simulation_with_files(const std::string& address, Images images);
 bool is_simulation(const std::vector<std::string>& sources);
 
 /// The configuration of --config and --set: a preset, a file, or the defaults; checked as a whole.

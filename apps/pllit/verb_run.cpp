@@ -167,7 +167,7 @@ Verb add_run(CLI::App& program) {
   verb->add_flag("--json", options->json, "Print the summary as JSON");
   verb->footer(
       "Examples:\n"
-      "  pllit run 'sim:room?seed=1&duration=30'\n"
+      "  pllit run 'sim:box_room?seed=1&duration=30'\n"
       "  pllit run drive.bag --config kitti --truth drive.tum --out results/drive");
   return {verb, [options] { return run(*options); }};
 }

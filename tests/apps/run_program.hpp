@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_folder.hpp"
+
 namespace pllit::test {
 
 struct Outcome {
@@ -19,16 +21,9 @@ struct Outcome {
   std::string out, err;
 };
 
-/// A folder of its own for each test, removed afterwards.
+/// Each test has a folder of its own.
 class ProgramTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (std::filesystem::path(testing::TempDir()) / "pllit_program_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   std::string write(const std::string& name, const std::string& text) const {
@@ -50,7 +45,7 @@ class ProgramTest : public testing::Test {
   }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 }  // namespace pllit::test

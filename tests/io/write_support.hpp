@@ -1,36 +1,17 @@
-// What the tests of writers share: a folder of their own, a disk that fills up, and a cloud.
+// What the tests of writers share: a disk that fills up, and a cloud.
 #pragma once
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <cstring>
-#include <filesystem>
-#include <format>
 #include <random>
 #include <string>
 
 #include "pllit/state/table.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace pllit::test {
-
-/// An empty folder that goes away with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "pllit_write_XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// While it lives no file of this process grows beyond `bytes`: writes fail as on a full disk.
 class FullDisk {

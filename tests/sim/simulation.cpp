@@ -21,9 +21,9 @@ std::vector<SensorEvent> all_events(Simulation& simulation) {
   }
 }
 
-/// What sim:room?lidar=ring16&duration=6 with more options (&key=value) delivers.
+/// What sim:box_room?lidar=ring16&duration=6 with more options (&key=value) delivers.
 std::vector<SensorEvent> events_of(const std::string& options) {
-  auto simulation = open_simulation("sim:room?lidar=ring16&duration=6" + options);
+  auto simulation = open_simulation("sim:box_room?lidar=ring16&duration=6" + options);
   EXPECT_TRUE(simulation) << simulation.error().message;
   return all_events(*simulation);
 }
@@ -86,7 +86,7 @@ TEST(Simulation, DeliversAScanAfterTheImuSampleAtItsEnd) {
 
 TEST(Simulation, GivesTheSameBytesForTheSameSeedAndOthersForAnother) {
   const auto bytes = [](const std::string& options) {
-    auto simulation = open_simulation("sim:room?lidar=ring16&duration=3" + options);
+    auto simulation = open_simulation("sim:box_room?lidar=ring16&duration=3" + options);
     EXPECT_TRUE(simulation);
     return bytes_of(all_events(*simulation));
   };
@@ -98,7 +98,7 @@ TEST(Simulation, GivesTheSameBytesForTheSameSeedAndOthersForAnother) {
 }
 
 TEST(Simulation, MayBeMovedWhileItRuns) {
-  auto first = open_simulation("sim:room?lidar=ring16&duration=3");
+  auto first = open_simulation("sim:box_room?lidar=ring16&duration=3");
   ASSERT_TRUE(first);
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(first->next());
   Simulation second = std::move(*first);
@@ -106,9 +106,9 @@ TEST(Simulation, MayBeMovedWhileItRuns) {
 }
 
 TEST(Simulation, RunsInEverySceneWithEveryMotion) {
-  for (const std::string scene : {"room", "corridor", "outdoor"}) {
+  for (const std::string scene : {"room", "corridor", "street"}) {
     for (const std::string motion : {"walk", "shake"}) {
-      auto simulation = open_simulation("sim:" + scene + "?lidar=ring16&duration=3&motion=" + motion);
+      auto simulation = open_simulation("sim:box_" + scene + "?lidar=ring16&duration=3&motion=" + motion);
       ASSERT_TRUE(simulation);
       EXPECT_EQ(simulation->progress(), 0.0);
       const auto scans = only<LidarScan>(all_events(*simulation));
@@ -120,7 +120,7 @@ TEST(Simulation, RunsInEverySceneWithEveryMotion) {
 }
 
 TEST(Simulation, KnowsItsTruthAtEveryImuSample) {
-  const auto simulation = open_simulation("sim:room?duration=6&imu_rate=100&lidar=ring16");
+  const auto simulation = open_simulation("sim:box_room?duration=6&imu_rate=100&lidar=ring16");
   ASSERT_TRUE(simulation);
   const Trajectory truth = simulation->truth();
   ASSERT_EQ(truth.size(), 601u);
@@ -130,7 +130,7 @@ TEST(Simulation, KnowsItsTruthAtEveryImuSample) {
 }
 
 TEST(Simulation, KnowsItsTrueBiases) {
-  auto simulation = open_simulation("sim:room?duration=10&lidar=ring16");
+  auto simulation = open_simulation("sim:box_room?duration=10&lidar=ring16");
   ASSERT_TRUE(simulation);
   const auto biases = simulation->true_biases();
   const Motion motion = simulation->motion();
@@ -151,7 +151,7 @@ TEST(Simulation, KnowsItsTrueBiases) {
 }
 
 TEST(Simulation, HasNeitherNoiseNorBiasWhenIdeal) {
-  auto simulation = open_simulation("sim:room?duration=6&lidar=ring16&ideal=1");
+  auto simulation = open_simulation("sim:box_room?duration=6&lidar=ring16&ideal=1");
   ASSERT_TRUE(simulation);
   for (const StampedImuBias& bias : simulation->true_biases()) ASSERT_EQ(bias.bias.gyro_rps, Vector3d::Zero());
   const auto events = all_events(*simulation);
@@ -163,7 +163,7 @@ TEST(Simulation, HasNeitherNoiseNorBiasWhenIdeal) {
   for (const LidarScan& scan : only<LidarScan>(events)) {
     for (std::size_t i = 0; i < scan.points_L.size(); i += 50) {
       const SE3 T_W_L = simulation->motion().at(scan.start + scan.offsets[i]).T_W_I * simulation->rig().T_I_L;
-      ASSERT_LT(simulation->world().distance_m(T_W_L.act(scan.points_L[i].cast<double>())), 1e-6);
+      ASSERT_LT(simulation->boxes().distance_m(T_W_L.act(scan.points_L[i].cast<double>())), 1e-6);
     }
   }
 }

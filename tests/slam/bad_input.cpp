@@ -10,7 +10,7 @@ double final_error_m(const test::SimulatedRun& run) {
   return test::relative_error_W(run, run.frames.front(), run.frames.back()).tail<3>().norm();
 }
 
-std::string with_fault(const std::string& fault) { return "sim:room?duration=16&lidar=ring16&seed=11&" + fault; }
+std::string with_fault(const std::string& fault) { return "sim:box_room?duration=16&lidar=ring16&seed=11&" + fault; }
 
 /// States of the frames between two times since the first frame.
 int count_between(const test::SimulatedRun& run, double from_s, double to_s, HealthState state) {
@@ -48,7 +48,7 @@ TEST(NonFiniteImuSamples, AreDroppedAndTold) {
 }
 
 TEST(DuplicatedMessages, ChangeNothing) {
-  const auto clean = test::run_simulation("sim:room?duration=16&lidar=ring16&seed=11");
+  const auto clean = test::run_simulation("sim:box_room?duration=16&lidar=ring16&seed=11");
   const auto run = test::run_simulation(with_fault("duplicates=5:9"));
   ASSERT_TRUE(run.result);
   EXPECT_THAT(run.summary.notes, testing::Contains(testing::HasSubstr("duplicates")));
@@ -75,7 +75,7 @@ TEST(LateScansAndSwappedSamples, DoNoHarm) {
 }
 
 TEST(AFailingSink, EndsTheRunWithItsReason) {
-  auto simulation = open_simulation("sim:room?duration=5&lidar=ring16");
+  auto simulation = open_simulation("sim:box_room?duration=5&lidar=ring16");
   const Rig rig = simulation->rig();
   RunSummary summary;
   int taken = 0;
@@ -89,7 +89,7 @@ TEST(AFailingSink, EndsTheRunWithItsReason) {
 }
 
 TEST(AStopRequest, EndsTheRunWhereItIs) {
-  auto simulation = open_simulation("sim:room?duration=10&lidar=ring16");
+  auto simulation = open_simulation("sim:box_room?duration=10&lidar=ring16");
   const Rig rig = simulation->rig();
   RunSummary summary;
   std::stop_source stop;

@@ -31,10 +31,10 @@ TEST(Consistency, WithAKnownMapTheNeesOfThePoseIsChiSquared) {
   constexpr int runs = 50;
   double mean_nees = 0.0;
   for (int seed = 1; seed <= runs; ++seed) {
-    auto simulation = open_simulation("sim:room?duration=6&lidar=ring16&seed=" + std::to_string(seed));
+    auto simulation = open_simulation("sim:box_room?duration=6&lidar=ring16&seed=" + std::to_string(seed));
     ASSERT_TRUE(simulation);
     const Rig rig = simulation->rig();
-    const PlaneMap map = known_map(simulation->world(), {.voxel_m = 0.4, .max_thickness = 0.0005});
+    const PlaneMap map = known_map(simulation->boxes(), {.voxel_m = 0.4, .max_thickness = 0.0005});
     const PlaneResidualConfig every_point{.huber = 0.0, .gate = 3.5, .max_information = 0.0, .plane_points = 1e9};
     test::Random random(static_cast<unsigned>(seed));
     Arena arena(2);
@@ -84,11 +84,11 @@ TEST(Consistency, WithAKnownMapTheNeesOfThePoseIsChiSquared) {
 }
 
 TEST(Consistency, WithItsOwnMapRelativePosesOverTenMetresAreAsGoodAsClaimed) {
-  for (const std::string scene : {"room", "outdoor"}) {
+  for (const std::string scene : {"room", "street"}) {
     Vector6 squares = Vector6::Zero(), claimed = Vector6::Zero();
     int count = 0;
     for (int seed = 501; seed <= 512; ++seed) {
-      const auto run = test::run_simulation("sim:" + scene + "?duration=30&lidar=ring16&seed=" + std::to_string(seed));
+      const auto run = test::run_simulation("sim:box_" + scene + "?duration=30&lidar=ring16&seed=" + std::to_string(seed));
       ASSERT_TRUE(run.result) << run.result.error().message;
       std::vector<double> distance_m{0.0};
       for (std::size_t i = 1; i < run.frames.size(); ++i)
@@ -117,7 +117,7 @@ TEST(Consistency, WithItsOwnMapRelativePosesOverTenMetresAreAsGoodAsClaimed) {
 TEST(Consistency, AlongAnEndlessCorridorTheSigmaGrowsAndCoversTheError) {
   int covered = 0, frames = 0;
   for (int seed = 601; seed <= 610; ++seed) {
-    const auto run = test::run_simulation("sim:corridor?duration=25&lidar=ring16&seed=" + std::to_string(seed));
+    const auto run = test::run_simulation("sim:box_corridor?duration=25&lidar=ring16&seed=" + std::to_string(seed));
     ASSERT_TRUE(run.result) << run.result.error().message;
     const FrameEstimate& first = run.frames.front();
     double sigma_early = 0.0, sigma_late = 0.0;

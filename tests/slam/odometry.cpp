@@ -26,7 +26,7 @@ Errors errors_of(const test::SimulatedRun& run) {
 
 TEST(Odometry, KeepsToACentimetreAndATenthOfADegreeInARoom) {
   for (const int seed : {1, 2, 3}) {
-    const auto run = test::run_simulation("sim:room?duration=30&lidar=ring16&seed=" + std::to_string(seed));
+    const auto run = test::run_simulation("sim:box_room?duration=30&lidar=ring16&seed=" + std::to_string(seed));
     ASSERT_TRUE(run.result) << run.result.error().message;
     ASSERT_GT(run.frames.size(), 250u);
     EXPECT_LT(errors_of(run).rms_m, 0.01) << "seed " << seed;
@@ -37,7 +37,7 @@ TEST(Odometry, KeepsToACentimetreAndATenthOfADegreeInARoom) {
 }
 
 TEST(Odometry, SurvivesFastTurns) {
-  const auto run = test::run_simulation("sim:room?duration=20&lidar=ring16&motion=shake&seed=4");
+  const auto run = test::run_simulation("sim:box_room?duration=20&lidar=ring16&motion=shake&seed=4");
   ASSERT_TRUE(run.result) << run.result.error().message;
   EXPECT_LT(errors_of(run).rms_m, 0.02);
   EXPECT_LT(errors_of(run).rms_deg, 0.4);
@@ -45,7 +45,7 @@ TEST(Odometry, SurvivesFastTurns) {
 
 TEST(Odometry, WorksWithAnImuOfTenToAThousandHertz) {
   for (const int rate_hz : {20, 100, 1000}) {
-    const auto run = test::run_simulation("sim:room?duration=15&lidar=ring16&seed=5&imu_rate=" + std::to_string(rate_hz));
+    const auto run = test::run_simulation("sim:box_room?duration=15&lidar=ring16&seed=5&imu_rate=" + std::to_string(rate_hz));
     ASSERT_TRUE(run.result) << run.result.error().message;
     EXPECT_LT(errors_of(run).rms_m, 0.02) << rate_hz << " Hz";
   }
@@ -55,7 +55,7 @@ TEST(Odometry, GivesTheSameBytesForAnyNumberOfThreads) {
   Config one, four;
   one.threads = 1;
   four.threads = 4;
-  const std::string address = "sim:room?duration=6&lidar=ring16&seed=6";
+  const std::string address = "sim:box_room?duration=6&lidar=ring16&seed=6";
   const auto a = test::run_simulation(address, one), b = test::run_simulation(address, four);
   ASSERT_EQ(a.frames.size(), b.frames.size());
   for (std::size_t i = 0; i < a.frames.size(); ++i) {
@@ -65,21 +65,21 @@ TEST(Odometry, GivesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Odometry, EstimatesTheSameFromAnAccelerometerInG) {
-  const auto si = test::run_simulation("sim:room?duration=8&lidar=ring16&seed=7");
-  const auto in_g = test::run_simulation("sim:room?duration=8&lidar=ring16&seed=7&accel_unit=g");
+  const auto si = test::run_simulation("sim:box_room?duration=8&lidar=ring16&seed=7");
+  const auto in_g = test::run_simulation("sim:box_room?duration=8&lidar=ring16&seed=7&accel_unit=g");
   ASSERT_TRUE(in_g.summary.start);
   EXPECT_EQ(in_g.summary.start->unit, AccelUnit::g);
   EXPECT_LT((si.frames.back().posterior.mean.p_W - in_g.frames.back().posterior.mean.p_W).norm(), 1e-6);
 }
 
 TEST(Odometry, LosesNoScanToItsStart) {
-  const auto run = test::run_simulation("sim:room?duration=5&lidar=ring16&seed=8");
+  const auto run = test::run_simulation("sim:box_room?duration=5&lidar=ring16&seed=8");
   EXPECT_GE(run.frames.size(), 49u);
   EXPECT_TRUE(run.summary.start->still);  // although the simulated gyroscope has a bias of a degree a second
 }
 
 TEST(Odometry, RefusesARecordingThatIsTooShortToStart) {
-  auto simulation = open_simulation("sim:room?duration=3&lidar=ring16");
+  auto simulation = open_simulation("sim:box_room?duration=3&lidar=ring16");
   Config config;
   config.start.window_s = 30.0;
   const Rig rig = simulation->rig();

@@ -1,7 +1,5 @@
 #include "support/bag_fixtures.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -47,17 +45,6 @@ LidarScan sample_scan(Time start) {
 }
 
 }  // namespace
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "pllit_test_XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder can be made");
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 std::vector<std::byte> serialised(const CloudMessage& message) {
   const auto count = static_cast<std::uint32_t>(message.columns.front().values.size());

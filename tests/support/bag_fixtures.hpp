@@ -11,21 +11,9 @@
 #include "pllit/io/bag_writer.hpp"
 #include "pllit/io/byte_writer.hpp"
 #include "pllit/sensor/measurements.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace pllit::test {
-
-/// A fresh folder, removed with all in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 using CloudNumber = std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t, std::uint32_t,
                                  float, double, std::int64_t, std::uint64_t>;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,7 +16,9 @@ namespace pllit {
 /// of floating-point numbers come out the same to the bit for any number of threads.
 class Arena {
  public:
-  explicit Arena(int threads) : arena_(std::max(1, threads)) {}
+  /// Zero or fewer threads: one for each of the machine's.
+  explicit Arena(int threads)
+      : arena_(threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
 
   /// Calls body(begin, end) for chunks of [0, count).
   template <class Body>

@@ -5,9 +5,10 @@
 #include <cctype>
 #include <format>
 #include <map>
-#include <numeric>
 #include <span>
 #include <utility>
+
+#include "pllit/base/words.hpp"
 
 namespace pllit {
 namespace {
@@ -80,20 +81,6 @@ int likelihood(const RoleFacts& facts, const TopicInfo& topic) {
 const TopicInfo& likeliest(const RoleFacts& facts, const std::vector<TopicInfo>& candidates) {
   return *std::ranges::max_element(
       candidates, {}, [&](const TopicInfo& topic) { return std::pair(likelihood(facts, topic), topic.count); });
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0u);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
 }
 
 std::unexpected<Error> missing(const RoleFacts& facts, const std::string& wanted,

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::uint8_t kUint16 = 4;  // sensor_msgs/PointField
 constexpr std::uint8_t kFloat32 = 7;
+constexpr std::uint8_t kFloat64 = 8;
 constexpr std::uint8_t kFirstReturn = 0x10;  // Livox tag
 
 ByteWriter& write_header(ByteWriter& writer, Time stamp, std::string_view frame_id) {
@@ -67,25 +68,31 @@ std::vector<std::byte> encode_imu(const ImuSample& sample, std::string_view fram
 
 std::vector<std::byte> encode_point_cloud2(const LidarScan& scan, std::string_view frame_id,
                                            const PointCloud2Layout& layout) {
-  constexpr std::uint32_t kPointStep = 22;
-  assert(layout.rings.empty() || layout.rings.size() == scan.points_L.size());
+  const bool absolute = layout.time_field == PointCloud2Layout::TimeField::timestamp;
+  const std::uint32_t time_bytes = absolute ? 8 : 4, point_step = 16 + time_bytes + 2;
+  assert(scan.rings.empty() || scan.rings.size() == scan.points_L.size());
   const auto count = static_cast<std::uint32_t>(scan.points_L.size());
   ByteWriter writer;
-  writer.reserve(256 + std::size_t{count} * kPointStep);
+  writer.reserve(256 + std::size_t{count} * point_step);
   write_header(writer, scan.start, frame_id);
   writer.write(std::uint32_t{1}).write(count).write(std::uint32_t{6});
   write_field(writer, "x", 0, kFloat32);
   write_field(writer, "y", 4, kFloat32);
   write_field(writer, "z", 8, kFloat32);
   write_field(writer, "intensity", 12, kFloat32);
-  write_field(writer, "time", 16, kFloat32);
-  write_field(writer, "ring", 20, kUint16);
-  writer.write(std::uint8_t{0}).write(kPointStep).write(count * kPointStep).write(count * kPointStep);
-  const double scale = units_per_second(layout.time_unit);
+  write_field(writer, absolute ? "timestamp" : "time", 16, absolute ? kFloat64 : kFloat32);
+  write_field(writer, "ring", 16 + time_bytes, kUint16);
+  writer.write(std::uint8_t{0}).write(point_step).write(count * point_step).write(count * point_step);
+  const double scale = units_per_second(layout.time_unit), start_s = to_seconds(scan.start.time_since_epoch());
   for (std::size_t i = 0; i < count; ++i) {
     for (int axis = 0; axis < 3; ++axis) writer.write(scan.points_L[i][axis]);
-    writer.write(scan.intensity[i]).write(static_cast<float>(to_seconds(scan.offsets[i]) * scale));
-    writer.write(layout.rings.empty() ? std::uint16_t{0} : layout.rings[i]);
+    writer.write(scan.intensity[i]);
+    const double offset_s = to_seconds(scan.offsets[i]);
+    if (absolute)
+      writer.write(start_s + offset_s);
+    else
+      writer.write(static_cast<float>(offset_s * scale));
+    writer.write(scan.rings.empty() ? std::uint16_t{0} : scan.rings[i]);
   }
   writer.write(std::uint8_t{1});  // is_dense
   return writer.take();
@@ -102,7 +109,8 @@ std::vector<std::byte> encode_livox_custom_msg(const LidarScan& scan, std::strin
     writer.write(static_cast<std::uint32_t>(scan.offsets[i].count()));
     for (int axis = 0; axis < 3; ++axis) writer.write(scan.points_L[i][axis]);
     const float reflectivity = std::clamp(std::round(scan.intensity[i]), 0.0f, 255.0f);
-    writer.write(static_cast<std::uint8_t>(reflectivity)).write(kFirstReturn).write(std::uint8_t{0});
+    writer.write(static_cast<std::uint8_t>(reflectivity)).write(kFirstReturn);
+    writer.write(static_cast<std::uint8_t>(scan.rings.empty() ? 0 : scan.rings[i]));
   }
   return writer.take();
 }

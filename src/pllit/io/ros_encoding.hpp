@@ -31,12 +31,16 @@ extern const RosType kLivoxCustomMsg2Type;  ///< of livox_ros_driver2
 std::vector<std::byte> encode_imu(const ImuSample& sample, std::string_view frame_id);
 
 struct PointCloud2Layout {
-  TimeUnit time_unit = TimeUnit::seconds;  ///< of the float32 field `time`; FAST-LIO2 and FAST-LIVO2 want microseconds
-  std::span<const std::uint16_t> rings{};  ///< one a point; zeros where empty
+  enum class TimeField {
+    time,      ///< float32, offset from the header stamp, as the Velodyne driver writes it
+    timestamp  ///< float64, absolute seconds, as the Hesai driver writes it
+  };
+  TimeField time_field = TimeField::time;
+  TimeUnit time_unit = TimeUnit::seconds;  ///< of `time`; FAST-LIO2 and FAST-LIVO2 want microseconds
 };
 
-/// Fields x, y, z, intensity, time (float32, offset from the header stamp) and ring (uint16), as the Velodyne driver
-/// writes them; header stamp = start of the scan.
+/// Fields x, y, z, intensity (float32), the time and ring (uint16, zeros where the scan has none); header stamp = start of the
+/// scan.
 std::vector<std::byte> encode_point_cloud2(const LidarScan& scan, std::string_view frame_id,
                                            const PointCloud2Layout& layout = {});
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
@@ -28,6 +29,7 @@ struct LidarScan {
   std::vector<Eigen::Vector3f> points_L;
   std::vector<Duration> offsets;
   std::vector<float> intensity;
+  std::vector<std::uint16_t> rings{};  ///< laser of each point; empty where unknown
 
   Time end() const { return offsets.empty() ? start : start + offsets.back(); }
 };

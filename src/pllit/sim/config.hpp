@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "pllit/base/error.hpp"
 
@@ -14,39 +17,77 @@ struct FaultInterval {
   bool contains(double t_s) const { return t_s >= from_s && t_s < to_s; }
 };
 
-/// What goes wrong, and when. An IMU sample is in an interval by its true time, a scan by the true end of its turn.
+/// What goes wrong, and when. An IMU sample and an image are in an interval by their true time, a scan by the true end of its turn.
 struct SimFaults {
   FaultInterval imu_gap;      ///< IMU samples are lost
   FaultInterval lidar_gap;    ///< scans are lost: a silent LiDAR
-  FaultInterval time_back;    ///< stamps of both sensors are 1 s too early; the times of receipt are not
+  FaultInterval image_gap;    ///< images are lost
+  FaultInterval time_back;    ///< stamps of all sensors are 1 s too early; the times of receipt are not
   FaultInterval duplicates;   ///< every message comes twice
   FaultInterval imu_nan;      ///< IMU samples hold NaN
   FaultInterval late_scans;   ///< scans are received late_by_s after the end of their turn
+  FaultInterval late_images;  ///< images are received late_by_s after their time
   FaultInterval swapped_imu;  ///< neighbouring IMU samples change places
   double late_by_s = 0.08;
+  double lost_share = 0.0;       ///< of all messages, at random
+  double clock_drift_ppm = 0.0;  ///< of the LiDAR's and the camera's clock against the IMU's
 };
+
+/// Boxes are exact, plain worlds for tests: rectangles, a spinning LiDAR, an IMU. The other scenes are worlds of triangles with heat and
+/// light, seen by a rig of real sensors that the estimator knows imperfectly.
+enum class SceneKind { box_room, box_corridor, box_street, room, corridor, stairs, plant, street, field };
 
 struct SimConfig {
-  enum class Place { room, corridor, outdoor };
   enum class Carried { walk, shake };
-  enum class Lidar { ring32, ring16 };
+  enum class BoxLidar { ring32, ring16 };
+  enum class RigName { hilti2022, ntu4dradlm, inspection };
+  enum class Way { as_recorded, mirrored, reversed };
+  enum class Images { none, agc, counts, both };
+  enum class Finding { none, table, cabinet, pipe };
+  enum class Arrival { drawn, heated, brought };
 
-  Place scene = Place::room;
-  Carried motion = Carried::walk;
-  Lidar lidar = Lidar::ring32;
+  SceneKind scene = SceneKind::box_room;
   std::uint64_t seed = 1;
-  double duration_s = 30.0;
+  std::optional<double> duration_s;  ///< 30 s for boxes, else the whole motion
+  bool ideal = false;                ///< no noise, no bias, nothing unknown to the estimator
+  SimFaults faults;
+
+  // Boxes.
+  Carried carried = Carried::walk;
+  BoxLidar box_lidar = BoxLidar::ring32;
   double imu_rate_hz = 200.0;
   double speed_mps = 1.0;
-  bool ideal = false;       ///< no noise and no bias
   bool accel_in_g = false;  ///< the accelerometer reports g instead of m/s2, as some LiDARs' own IMUs do
-  SimFaults faults;
+
+  // Worlds.
+  std::optional<RigName> rig;  ///< else what suits the scene
+  std::string motion;          ///< TUM file of the IMU's poses; else a motion is made that suits the scene
+  double speedup = 1.0;
+  Way way = Way::as_recorded;
+  std::optional<double> length_m;  ///< drives are continued or cut to it, corridors are as long
+  std::string imu;                 ///< model; else the rig's own
+  double image_rate_hz = 10.0;
+  Images images = Images::agc;
+  bool day = true;
+  int people = 0, cars = 0;
+  Finding finding = Finding::none;
+  Arrival arrival = Arrival::drawn;
+  double finding_at_s = 40.0, finding_K = 25.0;
 };
 
-/// Reads sim:SCENE?key=value&... with scene room, corridor or outdoor. Keys: seed; duration (s, 3 to 36000); imu_rate
-/// (Hz, 10 to 1000); speed (m/s, 0.1 to 3); motion=walk|shake; lidar=ring32|ring16; ideal=0|1; accel_unit=mps2|g; and
-/// the faults by their names above, each FROM:TO in seconds. What is unknown, repeated or out of range is an input
-/// error that says what would be right.
+bool is_box(SceneKind scene);
+std::string_view name_of(SceneKind scene);
+
+/// Reads sim:SCENE?key=value&... What is unknown, repeated, out of range or does not go together is an input error that says what
+/// would be right; sim_keys() lists the keys.
 Expected<SimConfig> parse_sim_config(std::string_view source);
+
+struct SimKey {
+  std::string_view name;
+  std::string wants;
+  enum class For { all, boxes, worlds } scenes = For::all;
+};
+std::vector<SimKey> sim_keys();
+std::vector<std::string> scene_names();
 
 }  // namespace pllit

@@ -1,155 +1,259 @@
 #include "pllit/sim/simulation.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cassert>
+#include <format>
 #include <utility>
-#include <variant>
+
+#include "pllit/sim/faults.hpp"
+#include "pllit/sim/motions.hpp"
+#include "pllit/sim/places/make_place.hpp"
+#include "pllit/sim/random.hpp"
+#include "pllit/sim/sensors.hpp"
+#include "pllit/sim/box_scene.hpp"
 
 namespace pllit {
+
+struct Simulation::Parts {
+  Parts(const SimConfig& c, ChosenMotion chosen, SimRig known_rig, SimRig built_rig)
+      : config(c),
+        known(std::move(known_rig)),
+        built(std::move(built_rig)),
+        rig(known.known()),
+        motion(std::move(chosen.motion)),
+        fit(chosen.distance),
+        end(std::min(motion.end(), motion.start() + from_seconds(c.duration_s.value_or(1e6)))),
+        line(c.faults, motion.start(), c.seed),
+        delivered_until(motion.start()) {}
+
+  SimConfig config;
+  SimRig known, built;  // of boxes: the IMU's model alone
+  Rig rig;
+  Motion motion;
+  std::optional<FitDistance> fit;
+  Time end;
+  std::optional<PlanesWorld> boxes;
+  std::optional<Surroundings> around;
+  std::optional<Sightings> sightings;
+  std::vector<std::unique_ptr<SimSensor>> sensors;  // in the order in which messages of one time are received
+  FaultyLine line;
+  Time delivered_until;
+
+  ImuStream fresh_imu() const { return ImuStream(motion.start(), built.imu, config.seed); }
+
+  SimSensor& first_due() const {
+    return **std::ranges::min_element(sensors, {}, [](const auto& sensor) { return sensor->due(); });
+  }
+  bool finished() const { return first_due().due() > end; }
+};
+
 namespace {
 
-constexpr Duration kTimeBack = std::chrono::seconds(1);
+constexpr double kReach_m = 150.0;
 
-/// A hand-held rig with a LiDAR over the IMU. The noise densities, 0.014 deg/s/sqrt(Hz) and 190 ug/sqrt(Hz), are of the
-/// order that makers of small MEMS IMUs state; the walks and ranges are assumed.
-Rig handheld_rig() {
-  Rig rig;
-  rig.T_I_L = pose_from(exp_so3({0.01, -0.02, 0.5}), {0.04, -0.02, 0.11});
-  rig.lidar = {.min_range_m = 0.5, .max_range_m = 120.0, .range_sigma_m = 0.01, .beam_sigma_rad = 0.0005};
-  rig.imu = {.gyro_density = 0.00024,
-             .accel_density = 0.0019,
-             .gyro_bias_walk = 1e-5,
-             .accel_bias_walk = 1e-4,
-             .gyro_bias_sigma = 0.01,
-             .accel_bias_sigma = 0.05};
-  return rig;
+SimConfig::RigName rig_for(const SimConfig& config) {
+  if (config.rig) return *config.rig;
+  if (config.scene == SceneKind::street || config.scene == SceneKind::field) return SimConfig::RigName::ntu4dradlm;
+  const bool inspected = config.scene == SceneKind::plant || config.finding != SimConfig::Finding::none;
+  return inspected ? SimConfig::RigName::inspection : SimConfig::RigName::hilti2022;
 }
 
-ImuNoise no_noise() {
-  return {.gyro_density = 0.0,
-          .accel_density = 0.0,
-          .gyro_bias_walk = 0.0,
-          .accel_bias_walk = 0.0,
-          .gyro_bias_sigma = 0.0,
-          .accel_bias_sigma = 0.0};
+PlaceKind place_kind(SceneKind scene) {
+  switch (scene) {
+    case SceneKind::corridor: return PlaceKind::corridor;
+    case SceneKind::stairs: return PlaceKind::stairs;
+    case SceneKind::plant: return PlaceKind::plant;
+    case SceneKind::street: return PlaceKind::street;
+    case SceneKind::field: return PlaceKind::field;
+    default: return PlaceKind::room;
+  }
 }
 
-Scene make_scene(const SimConfig& config) {
-  if (config.scene == SimConfig::Place::corridor) return corridor(1.5 * config.speed_mps * config.duration_s);
-  return config.scene == SimConfig::Place::room ? room(config.seed) : outdoor(config.seed);
+FindingSpec finding_of(const SimConfig& config) {
+  const bool heated = config.arrival == SimConfig::Arrival::drawn ? Random(config.seed, 42).uniform() < 0.5
+                                                                  : config.arrival == SimConfig::Arrival::heated;
+  using Kind = FindingSpec::Kind;
+  const Kind kind = config.finding == SimConfig::Finding::table     ? Kind::on_table
+                    : config.finding == SimConfig::Finding::cabinet ? Kind::cabinet
+                                                                    : Kind::pipe;
+  return {.kind = kind,
+          .arrival = heated ? FindingSpec::Arrival::heated_in_place : FindingSpec::Arrival::brought_in_hot,
+          .at_s = config.finding_at_s,
+          .by_K = config.finding_K};
 }
 
-Motion make_motion(const SimConfig& config, const Lane& lane) {
-  const MotionConfig motion{.seed = config.seed, .duration_s = config.duration_s, .speed_mps = config.speed_mps};
-  return config.motion == SimConfig::Carried::walk ? walk_along(lane, motion) : fast_shake(lane, motion);
+PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motion& motion, Time end) {
+  PlaceConfig place{.kind = place_kind(config.scene), .seed = config.seed, .path_W = {}};
+  place.duration_s = to_seconds(end - motion.start());
+  const int steps = std::max(2, static_cast<int>(place.duration_s / 0.2));
+  for (int i = 0; i <= steps; ++i) place.path_W.push_back(motion.at(motion.start() + from_seconds(place.duration_s * i / steps)).T_W_I.translation());
+  place.height_m = rig.height_m;
+  place.clearance_m = rig.on_car ? 2.5 : 0.6;
+  place.light = config.day ? Light::day : Light::night;
+  place.people = config.people;
+  place.cars = config.cars;
+  if (config.finding != SimConfig::Finding::none) {
+    place.findings.push_back(finding_of(config));
+    place.distractors = {{.kind = DistractorSpec::Kind::cold_object, .at_s = config.finding_at_s},
+                         {.kind = DistractorSpec::Kind::hot_radiator, .at_s = 0.0}};
+  }
+  return place;
 }
 
-SpinningLidar make_lidar(const SimConfig& config, const Rig& rig) {
-  SpinningLidar lidar{.pattern = config.lidar == SimConfig::Lidar::ring32 ? ring32_pattern() : ring16_pattern(),
-                      .model = rig.lidar,
-                      .T_I_L = rig.T_I_L};
-  if (config.ideal) lidar.model.range_sigma_m = lidar.model.beam_sigma_rad = 0.0;
-  return lidar;
+SimRig refined(SimRig rig, const SimConfig& config, const ImuModel* imu) {
+  if (imu) rig.imu = *imu;
+  // Only as built is a rig known that has no errors.
+  return config.ideal ? without_errors(rig) : as_built(rig, config.seed);
 }
 
-/// The event with its sensor's stamp moved.
-SensorEvent restamped(SensorEvent event, Duration by) {
-  if (auto* sample = std::get_if<ImuSample>(&event.data)) sample->time += by;
-  if (auto* scan = std::get_if<LidarScan>(&event.data)) scan->start += by;
-  return event;
+SceneObject object_of(const Actor& actor, const SimConfig& config, const std::vector<Vector3d>& path_W) {
+  const double begins = begins_s(actor);
+  const bool there = begins <= 0.0;
+  return {.name = actor.name,
+          .finding = actor.finding,
+          .arrival = there ? "there" : actor.heating.empty() ? "brought" : "heated",
+          .begins_s = begins,
+          .by_K = actor.finding ? config.finding_K : 0.0,
+          .centroid_W = visible_centroid_W(actor, begins, path_W),
+          .first_seen_s = {}};
 }
 
 }  // namespace
 
-Simulation::Simulation(const SimConfig& config)
-    : config_(config),
-      rig_(handheld_rig()),
-      scene_(make_scene(config)),
-      motion_(make_motion(config, scene_.lane)),
-      end_(motion_.start() + from_seconds(config.duration_s)),
-      lidar_(make_lidar(config, rig_)),
-      imu_(fresh_imu()),
-      delivered_until_(motion_.start()) {}
+Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
 
-ImuStream Simulation::fresh_imu() const {
-  return ImuStream(motion_.start(), config_.imu_rate_hz, config_.ideal ? no_noise() : rig_.imu, config_.seed);
+namespace {
+
+/// The sensors of a box scene.
+template <class Parts>
+void furnish_boxes(Parts& parts, BoxScene scene) {
+  parts.rig = scene.rig;
+  parts.boxes = std::move(scene.world);
+  parts.sensors.push_back(imu_sensor(parts.motion, parts.fresh_imu(), parts.config.accel_in_g));
+  parts.sensors.push_back(box_lidar_sensor(parts.motion, scene.lidar, *parts.boxes, parts.config.seed));
 }
 
-Time Simulation::next_scan_end() const { return motion_.start() + (scan_index_ + 1) * lidar_.pattern.period; }
-Time Simulation::next_made_time() const { return std::min(imu_.next_time(), next_scan_end()); }
-bool Simulation::finished() const { return next_made_time() > end_; }
+/// The place around the motion, and the rig's sensors in it.
+template <class Parts>
+Expected<void> furnish_world(Parts& parts) {
+  auto place = make_place(place_config(parts.config, parts.known, parts.motion, parts.end));
+  if (!place) return std::unexpected(place.error());
+  parts.around.emplace(std::move(*place), kReach_m);
+  parts.sightings.emplace(parts.around->place.get());
+  const SimConfig& config = parts.config;
+  parts.sensors.push_back(imu_sensor(parts.motion, parts.fresh_imu(), parts.built.accel_in_g));
+  parts.sensors.push_back(lidar_sensor(parts.motion, parts.built, *parts.around, config.seed));
+  if (config.images == SimConfig::Images::none) return {};
+  const ImageStream stream{.rate_hz = config.image_rate_hz,
+                           .agc = config.images != SimConfig::Images::counts,
+                           .counts = config.images != SimConfig::Images::agc,
+                           .ideal = config.ideal};
+  parts.sensors.push_back(parts.built.thermal
+                              ? thermal_sensor(parts.motion, parts.built, stream, *parts.around, config.seed, *parts.sightings)
+                              : visible_sensor(parts.motion, parts.built, stream, *parts.around, config.seed));
+  return {};
+}
+
+}  // namespace
+
+Expected<Simulation> Simulation::make(const SimConfig& config, const std::optional<Trajectory>& path) {
+  if (is_box(config.scene)) {
+    BoxScene scene = box_scene(config);
+    SimRig built{.name = "boxes", .imu = scene.imu, .lidar = {}, .thermal = {}, .visible = {}};
+    SimRig known = built;
+    known.visible.emplace();  // a box rig has no camera; known() asks for one
+    auto parts = std::make_unique<Parts>(config, ChosenMotion{scene.motion, {}}, std::move(known), std::move(built));
+    furnish_boxes(*parts, std::move(scene));
+    return Simulation(std::move(parts));
+  }
+  if (config.motion.empty() == path.has_value())
+    return failure(path ? "a path was given that the simulation does not name" : "the simulation names a motion's file that was not read");
+  std::optional<ImuModel> imu;
+  if (!config.imu.empty()) {
+    auto model = imu_model(config.imu);
+    if (!model) return std::unexpected(model.error());
+    imu = std::move(*model);
+  }
+  SimRig known = sim_rig(rig_for(config));
+  if (imu) known.imu = *imu;
+  auto motion = choose_motion(config, known, path);
+  if (!motion) return std::unexpected(motion.error());
+  SimRig built = refined(known, config, imu ? &*imu : nullptr);
+  auto parts = std::make_unique<Parts>(config, std::move(*motion), std::move(known), std::move(built));
+  if (auto furnished = furnish_world(*parts); !furnished) return std::unexpected(furnished.error());
+  return Simulation(std::move(parts));
+}
 
 Expected<std::optional<SensorEvent>> Simulation::next() {
+  Parts& parts = *parts_;
   // No event is received before its true time, so the first pending one is due once all up to its time have been made.
-  while (!finished() && (pending_.empty() || pending_.front().received >= next_made_time())) make_next();
-  if (pending_.empty()) return std::nullopt;
-  SensorEvent event = std::move(pending_.front());
-  pending_.pop_front();
-  delivered_until_ = event.received;
+  std::optional<SensorEvent> event = parts.line.pop_before(parts.finished() ? Time::max() : parts.first_due().due());
+  while (!event && !parts.finished()) {
+    SimSensor& sensor = parts.first_due();
+    auto made = sensor.take();
+    for (SensorEvent& one : made) parts.line.push(std::move(one), sensor.due());
+    event = parts.line.pop_before(parts.finished() ? Time::max() : parts.first_due().due());
+  }
+  if (event) parts.delivered_until = event->received;
   return event;
 }
 
 double Simulation::progress() const {
-  const double share = to_seconds(delivered_until_ - motion_.start()) / to_seconds(end_ - motion_.start());
-  return std::min(share, 1.0);
+  const Time start = parts_->motion.start();
+  return std::min(to_seconds(parts_->delivered_until - start) / to_seconds(parts_->end - start), 1.0);
 }
 
-void Simulation::make_next() {
-  if (imu_.next_time() <= next_scan_end())
-    make_imu_sample();
-  else
-    make_scan();
-}
-
-void Simulation::make_imu_sample() {
-  const double t_s = to_seconds(imu_.next_time() - motion_.start());
-  ImuSample sample = imu_.next(motion_);
-  Time received = sample.time;
-  const bool first_of_pair = imu_index_++ % 2 == 0;
-  if (config_.faults.imu_gap.contains(t_s)) return;
-  if (config_.accel_in_g) sample.accel_mps2 /= kStandardGravity_mps2;
-  if (config_.faults.imu_nan.contains(t_s))
-    sample.gyro_rps = sample.accel_mps2 = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  if (config_.faults.swapped_imu.contains(t_s) && first_of_pair) received = imu_.next_time() + Duration(1);
-  deliver({received, sample}, t_s);
-}
-
-void Simulation::make_scan() {
-  const Time end = next_scan_end();
-  const double t_s = to_seconds(end - motion_.start());
-  const auto index = static_cast<std::uint64_t>(scan_index_++);
-  if (config_.faults.lidar_gap.contains(t_s)) return;
-  // A stream a scan: a lost scan changes nothing in the others.
-  const Random random(config_.seed, 1000 + index);
-  LidarScan scan = simulate_scan(lidar_, scene_.world, motion_, end - lidar_.pattern.period, random);
-  const bool late = config_.faults.late_scans.contains(t_s);
-  deliver({late ? end + from_seconds(config_.faults.late_by_s) : end, std::move(scan)}, t_s);
-}
-
-void Simulation::deliver(SensorEvent event, double t_s) {
-  if (config_.faults.time_back.contains(t_s)) event = restamped(std::move(event), -kTimeBack);
-  const int copies = config_.faults.duplicates.contains(t_s) ? 2 : 1;
-  const auto order = [](const SensorEvent& e) { return std::pair(e.received, e.data.index()); };  // IMU before scan
-  const auto after = std::ranges::upper_bound(pending_, order(event), {}, order);
-  pending_.insert(after, static_cast<std::size_t>(copies), event);
-}
+const Rig& Simulation::rig() const { return parts_->rig; }
+const Motion& Simulation::motion() const { return parts_->motion; }
+const PlanesWorld& Simulation::boxes() const { return *parts_->boxes; }
 
 Trajectory Simulation::truth() const {
   Trajectory truth;
-  for (ImuStream imu = fresh_imu(); imu.next_time() <= end_; imu.next(motion_))
-    truth.push_back({imu.next_time(), motion_.at(imu.next_time()).T_W_I});
+  for (ImuStream imu = parts_->fresh_imu(); imu.next_time() <= parts_->end; imu.next(parts_->motion))
+    truth.push_back({imu.next_time(), parts_->motion.at(imu.next_time()).T_W_I});
   return truth;
 }
 
 std::vector<StampedImuBias> Simulation::true_biases() const {
   std::vector<StampedImuBias> biases;
-  for (ImuStream imu = fresh_imu(); imu.next_time() <= end_; imu.next(motion_))
+  for (ImuStream imu = parts_->fresh_imu(); imu.next_time() <= parts_->end; imu.next(parts_->motion))
     biases.push_back({imu.next_time(), imu.bias()});
   return biases;
 }
 
+SceneTruth Simulation::scene_truth() const {
+  const Parts& parts = *parts_;
+  SceneTruth truth;
+  truth.config = parts.config;
+  truth.rig = parts.known.name;
+  truth.start = parts.motion.start();
+  truth.duration_s = to_seconds(parts.end - truth.start);
+  truth.fit = parts.fit;
+  truth.imu_known = parts.rig.imu;
+  truth.imu = parts.built.imu.noise;
+  const std::vector<Vector3d> path_W = place_config(parts.config, parts.known, parts.motion, parts.end).path_W;
+  for (std::size_t i = 1; i < path_W.size(); ++i) truth.length_m += (path_W[i] - path_W[i - 1]).norm();
+  if (!parts.around) return truth;
+  truth.T_I_C_known = parts.known.T_I_C;
+  truth.T_I_C = parts.built.T_I_C;
+  truth.camera_known = parts.known.camera();
+  truth.camera = parts.built.camera();
+  truth.lidar_clock = parts.built.lidar_clock;
+  truth.camera_clock = parts.built.camera_clock;
+  const std::vector<Actor>& actors = parts.around->place->actors();
+  for (std::size_t i = 0; i < actors.size(); ++i) {
+    if (actors[i].path.size() > 1) continue;  // people and cars go their own way
+    truth.objects.push_back(object_of(actors[i], parts.config, path_W));
+    truth.objects.back().first_seen_s = parts.sightings->first_s()[i];
+  }
+  return truth;
+}
+
 Expected<Simulation> open_simulation(std::string_view source) {
-  return parse_sim_config(source).transform([](const SimConfig& config) { return Simulation(config); });
+  return parse_sim_config(source).and_then([](const SimConfig& config) { return Simulation::make(config); });
 }
 
 }  // namespace pllit

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "pllit/slam/config_suggest.hpp"
+#include "pllit/base/words.hpp"
 
 // A key's name is the token of the member that holds it, so that the two cannot diverge.
 #define PLLIT_KEY(member) #member, config.member

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <vector>
 
-#include "pllit/slam/config_suggest.hpp"
+#include "pllit/base/words.hpp"
 #include "pllit/slam/config_yaml.hpp"
 
 namespace pllit {

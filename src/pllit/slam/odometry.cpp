@@ -4,22 +4,13 @@
 #include <cmath>
 #include <format>
 #include <limits>
-#include <thread>
 
 namespace pllit {
 
 namespace ix = error_index;
 
-namespace {
-
-int thread_count(int configured) {
-  return configured > 0 ? configured : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
-}  // namespace
-
 Odometry::Odometry(const Rig& rig, const Config& config)
-    : rig_(rig), config_(config), arena_(thread_count(config.threads)), map_(config.map), drift_(config.drift) {}
+    : rig_(rig), config_(config), arena_(config.threads), map_(config.map), drift_(config.drift) {}
 
 Expected<std::vector<FrameEstimate>> Odometry::process(SensorPacket packet) {
   waiting_.push_back(std::move(packet));

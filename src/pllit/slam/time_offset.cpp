@@ -86,7 +86,7 @@ std::optional<Vector3d> rate_around(Time time, std::span<const LidarRotation> ro
 /// LiDAR-only odometry: constant velocity and rate from scan to scan, as no IMU may have a say.
 class LidarOdometry {
  public:
-  LidarOdometry(const Rig& rig, const Config& config) : rig_(rig), config_(config), map_(config.map), arena_(config.threads > 0 ? config.threads : 2) {
+  LidarOdometry(const Rig& rig, const Config& config) : rig_(rig), config_(config), map_(config.map), arena_(config.threads) {
     estimate_.covariance.diagonal().setConstant(1e-6);
   }
 

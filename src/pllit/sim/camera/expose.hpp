@@ -1,0 +1,39 @@
+// Samples over the pixels' areas and the time of exposure: what every camera has in common.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <vector>
+
+#include "pllit/base/arena.hpp"
+#include "pllit/base/time.hpp"
+#include "pllit/sim/camera/ray_table.hpp"
+#include "pllit/sim/world/ray_caster.hpp"
+
+namespace pllit {
+
+/// T_W_C at any time, also somewhat before a motion's start.
+using CameraPath = std::function<SE3(Time)>;
+
+/// Poses at moments that weigh equally, in order of time.
+struct ExposurePoses {
+  std::vector<Eigen::Matrix3d> R_W_C;
+  std::vector<Eigen::Vector3d> p_W;
+};
+
+/// A shutter that is open for `length` around `middle`.
+ExposurePoses open_shutter(const CameraPath& path, Time middle, Duration length);
+/// A bolometer read at `readout`, whose memory fades exponentially: on average it sees one time constant earlier.
+ExposurePoses fading_memory(const CameraPath& path, Time readout, Duration time_constant);
+
+/// Gives the samples of one pixel their values. Called from several threads.
+using Shade = std::function<void(std::span<const Ray>, std::span<const Hit>, std::span<float>)>;
+
+/// Mean over the samples of each pixel, CV_32FC1. They are spread over the pixel's area and the poses by
+/// low-discrepancy sequences that depend on the pixel and on `seed` alone.
+cv::Mat expose(const RayTable& table, const RayCaster& caster, const ExposurePoses& poses, int samples,
+               std::uint64_t seed, const Shade& shade, Arena& arena);
+
+}  // namespace pllit

@@ -1,0 +1,296 @@
+#include "pllit/sim/world/ray_caster.hpp"
+
+#include <embree4/rtcore.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+namespace pllit {
+namespace {
+
+/// How far the rig may be from where tiles and coordinates were last arranged around it.
+constexpr double kSlack_m = 16.0;
+/// Texture coordinates of static things are taken modulo this, tile by tile: float then resolves 0.06 mm.
+constexpr double kTextureWrap_m = 1024.0;
+const Vector3d kNowhere = Vector3d::Constant(std::numeric_limits<double>::infinity());
+/// What blocked() leaves out at either end.
+constexpr float kBlockedMargin_m = 1e-3F;
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+template <class Handle>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+
+/// Embree reports out of memory or an unusable processor here: nothing that a caller could mend.
+void check(RTCDevice device) {
+  if (rtcGetDeviceError(device) == RTC_ERROR_NONE) return;
+  const char* message = rtcGetDeviceLastErrorMessage(device);
+  throw std::runtime_error("the ray caster's Embree library failed: " + std::string(message ? message : "no reason"));
+}
+
+/// Builds on one thread alone, so that the tree, and with it which of two coinciding triangles is hit, is always the
+/// same.
+void commit(RTCDevice device, RTCScene scene) {
+  tbb::task_arena alone(1);
+  alone.execute([scene] { rtcJoinCommitScene(scene); });
+  check(device);
+}
+
+Owned<RTCScene> new_scene(RTCDevice device) {
+  Owned<RTCScene> scene(rtcNewScene(device));
+  check(device);
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  return scene;
+}
+
+/// A scene of one mesh in the mesh's own frame.
+Owned<RTCScene> scene_of(RTCDevice device, const Mesh& mesh) {
+  Owned<RTCScene> scene = new_scene(device);
+  const Owned<RTCGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  if (!mesh.triangles.empty()) {
+    using Vertex = std::array<float, 3>;
+    using Triangle = std::array<std::uint32_t, 3>;
+    auto* vertices = static_cast<Vertex*>(rtcSetNewGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vertex), mesh.vertices.size()));
+    auto* triangles = static_cast<Triangle*>(rtcSetNewGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), mesh.triangles.size()));
+    check(device);
+    std::ranges::transform(mesh.vertices, vertices, [](const Vector3f& v) { return Vertex{v.x(), v.y(), v.z()}; });
+    std::ranges::copy(mesh.triangles, triangles);
+  }
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(scene.get(), geometry.get());
+  commit(device, scene.get());
+  return scene;
+}
+
+/// A mesh placed in the world: a tile or an actor.
+struct Part {
+  Owned<RTCScene> scene;
+  Owned<RTCGeometry> instance;
+  std::vector<std::uint32_t> surface;
+  std::vector<float> warmer_K;
+  SE3 T_W_O = SE3::Identity();
+  Matrix3d R_O_W = Matrix3d::Identity();
+  Vector3d texture_shift_O = Vector3d::Zero();  ///< tile: from its frame to where its textures are read
+  std::uint32_t actor = Hit::kStatic;
+  unsigned slot = 0;  ///< Embree's number for the instance
+  Vector3d put_about_W = kNowhere;
+};
+
+Part part_of(RTCDevice device, const Mesh& mesh) {
+  Part part;
+  part.scene = scene_of(device, mesh);
+  part.surface = mesh.surface;
+  part.warmer_K = mesh.warmer_K;
+  part.instance.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
+  rtcSetGeometryInstancedScene(part.instance.get(), part.scene.get());
+  check(device);
+  return part;
+}
+
+/// Puts the part at a pose, in Embree's coordinates: axes of W about centre_W. Costs nothing where it is there already.
+void put(Part& part, const SE3& T_W_O, const Vector3d& centre_W) {
+  if (part.put_about_W == centre_W && part.T_W_O.coeffs() == T_W_O.coeffs()) return;
+  part.put_about_W = centre_W;
+  part.T_W_O = T_W_O;
+  part.R_O_W = T_W_O.rotation().transpose();
+  Eigen::Matrix<float, 3, 4> T;
+  T << T_W_O.rotation().cast<float>(), (T_W_O.translation() - centre_W).cast<float>();
+  rtcSetGeometryTransform(part.instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, T.data());
+  rtcCommitGeometry(part.instance.get());
+}
+
+RTCRay embree_ray(const Vector3d& origin, const Vector3d& direction, float near_m, float far_m) {
+  const Vector3f o = origin.cast<float>(), d = direction.cast<float>();
+  return {.org_x = o.x(),
+          .org_y = o.y(),
+          .org_z = o.z(),
+          .tnear = near_m,
+          .dir_x = d.x(),
+          .dir_y = d.y(),
+          .dir_z = d.z(),
+          .time = 0.0F,
+          .tfar = far_m,
+          .mask = ~0U,
+          .id = 0,
+          .flags = 0};
+}
+
+/// Packets of eight run 1.3 to 1.7 times as fast as single rays where they point in similar directions (AVX2, 200 000
+/// triangles).
+constexpr std::size_t kPacket = 8;
+
+RTCRayHit8 packet_of(std::span<const Ray> rays, const Vector3d& centre_W, float reach_m) {
+  RTCRayHit8 packet{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RTCRay ray = embree_ray(rays[i].origin_W - centre_W, rays[i].direction_W, 0.0F, reach_m);
+    packet.ray.org_x[i] = ray.org_x;
+    packet.ray.org_y[i] = ray.org_y;
+    packet.ray.org_z[i] = ray.org_z;
+    packet.ray.dir_x[i] = ray.dir_x;
+    packet.ray.dir_y[i] = ray.dir_y;
+    packet.ray.dir_z[i] = ray.dir_z;
+    packet.ray.tfar[i] = ray.tfar;
+    packet.ray.mask[i] = ray.mask;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  return packet;
+}
+
+}  // namespace
+
+struct RayCaster::Scene {
+  Scene(const Place& place_to_cast_in, double reach);
+
+  void arrange(const Vector3d& p_W);
+  void exchange_tiles(const Vector3d& p_W);
+  void pose_actors(double t_s);
+  void attach(Part& part);
+  void detach(Part& part);
+  Hit hit_of(const Ray& ray, const RTCRayHit& answer) const;
+
+  const Place& world;
+  double reach_m;
+  Owned<RTCDevice> device;
+  Owned<RTCScene> top;
+  std::map<std::uint32_t, Part> tiles;
+  std::vector<Part> actors;
+  std::vector<bool> present;         ///< which actors are attached
+  std::vector<const Part*> part_at;  ///< by Embree's number
+  Vector3d centre_W;                 ///< origin of Embree's coordinates
+};
+
+RayCaster::Scene::Scene(const Place& place_to_cast_in, double reach)
+    : world(place_to_cast_in), reach_m(reach), device(rtcNewDevice(nullptr)), centre_W(kNowhere) {
+  check(device.get());
+  top = new_scene(device.get());
+  for (const Actor& actor : world.actors()) {
+    actors.push_back(part_of(device.get(), actor.mesh_O));
+    actors.back().actor = static_cast<std::uint32_t>(actors.size() - 1);
+  }
+  present.resize(actors.size(), false);
+}
+
+void RayCaster::Scene::attach(Part& part) {
+  part.slot = rtcAttachGeometry(top.get(), part.instance.get());
+  if (part.slot >= part_at.size()) part_at.resize(part.slot + 1, nullptr);
+  part_at[part.slot] = &part;
+}
+
+void RayCaster::Scene::detach(Part& part) {
+  rtcDetachGeometry(top.get(), part.slot);
+  part_at[part.slot] = nullptr;
+}
+
+void RayCaster::Scene::exchange_tiles(const Vector3d& p_W) {
+  const auto kept = world.tiles_near(p_W, reach_m + 3.0 * kSlack_m);
+  std::erase_if(tiles, [&](auto& tile) {
+    const bool far = !std::ranges::binary_search(kept, tile.first);
+    if (far) detach(tile.second);
+    return far;
+  });
+  for (const std::uint32_t index : world.tiles_near(p_W, reach_m + kSlack_m)) {
+    if (tiles.contains(index)) continue;
+    const Tile tile = world.tile(index);
+    Part& part = tiles.emplace(index, part_of(device.get(), tile.mesh)).first->second;
+    part.T_W_O = pose_from(SO3::Identity(), tile.origin_W);
+    part.texture_shift_O = tile.origin_W - kTextureWrap_m * (tile.origin_W / kTextureWrap_m).array().round().matrix();
+    attach(part);
+  }
+}
+
+void RayCaster::Scene::arrange(const Vector3d& p_W) {
+  if ((p_W - centre_W).norm() <= kSlack_m) return;
+  exchange_tiles(p_W);
+  // Whole metres, so that tiles with such origins are placed without rounding.
+  centre_W = p_W.array().round();
+  for (auto& [index, part] : tiles) put(part, part.T_W_O, centre_W);
+}
+
+void RayCaster::Scene::pose_actors(double t_s) {
+  for (std::size_t i = 0; i < actors.size(); ++i) {
+    const Actor& actor = world.actors()[i];
+    const bool now = actor.present(t_s);
+    if (now && !present[i]) attach(actors[i]);
+    if (!now && present[i]) detach(actors[i]);
+    present[i] = now;
+    if (now) put(actors[i], actor.pose(t_s), centre_W);
+  }
+}
+
+Hit RayCaster::Scene::hit_of(const Ray& ray, const RTCRayHit& answer) const {
+  if (answer.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  const Part& part = *part_at[answer.hit.instID[0]];
+  Vector3f normal_W = Vector3f(answer.hit.Ng_x, answer.hit.Ng_y, answer.hit.Ng_z).normalized();
+  Vector3d p_own = ray.origin_W + static_cast<double>(answer.ray.tfar) * ray.direction_W - part.T_W_O.translation();
+  if (part.actor == Hit::kStatic) {
+    p_own += part.texture_shift_O;
+  } else {
+    p_own = part.R_O_W * p_own;
+    normal_W = part.R_O_W.transpose().cast<float>() * normal_W;
+  }
+  if (normal_W.dot(ray.direction_W.cast<float>()) > 0.0F) normal_W = -normal_W;
+  return {.range_m = answer.ray.tfar,
+          .normal_W = normal_W,
+          .p_own = p_own.cast<float>(),
+          .surface = part.surface[answer.hit.primID],
+          .warmer_K = part.warmer_K[answer.hit.primID],
+          .actor = part.actor};
+}
+
+RayCaster::RayCaster(const Place& place, double reach_m) : scene_(std::make_unique<Scene>(place, reach_m)) {}
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster::~RayCaster() = default;
+
+void RayCaster::move_to(const Vector3d& p_W, double t_s) {
+  scene_->arrange(p_W);
+  scene_->pose_actors(t_s);
+  commit(scene_->device.get(), scene_->top.get());
+}
+
+Hit RayCaster::cast(const Ray& ray) const {
+  RTCRayHit answer{
+      .ray = embree_ray(ray.origin_W - scene_->centre_W, ray.direction_W, 0.0F, static_cast<float>(scene_->reach_m)),
+      .hit = {}};
+  answer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene_->top.get(), &answer);
+  return scene_->hit_of(ray, answer);
+}
+
+void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const auto some = rays.subspan(first, std::min(kPacket, rays.size() - first));
+    RTCRayHit8 answers = packet_of(some, scene_->centre_W, static_cast<float>(scene_->reach_m));
+    alignas(32) std::array<int, kPacket> valid{};
+    std::fill_n(valid.begin(), some.size(), -1);
+    rtcIntersect8(valid.data(), scene_->top.get(), &answers, &arguments);
+    auto* any_width = reinterpret_cast<RTCRayHitN*>(&answers);
+    for (std::size_t i = 0; i < some.size(); ++i)
+      hits[first + i] = scene_->hit_of(some[i], rtcGetRayHitFromRayHitN(any_width, kPacket, static_cast<unsigned>(i)));
+  }
+}
+
+bool RayCaster::blocked(const Vector3d& from_W, const Vector3d& to_W) const {
+  const Vector3d way_W = to_W - from_W;
+  const double length_m = way_W.norm();
+  RTCRay ray = embree_ray(from_W - scene_->centre_W, way_W / length_m, kBlockedMargin_m,
+                          static_cast<float>(length_m) - kBlockedMargin_m);
+  if (ray.tfar <= ray.tnear) return false;
+  rtcOccluded1(scene_->top.get(), &ray);
+  return ray.tfar < 0.0F;
+}
+
+}  // namespace pllit

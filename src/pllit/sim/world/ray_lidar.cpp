@@ -1,0 +1,249 @@
+#include "pllit/sim/world/ray_lidar.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "pllit/sim/random.hpp"
+#include "pllit/sim/world/echoes.hpp"
+#include "pllit/sim/world/pose_table.hpp"
+
+namespace pllit {
+namespace {
+
+/// For how long actors stand still.
+constexpr Duration kStep = std::chrono::milliseconds(5);
+/// Shots that one thread casts together.
+constexpr std::size_t kChunk = 32;
+/// How far a neighbour may lie off a surface and still be taken for a part of it.
+constexpr float kSameSurface_m = 0.02F, kSameSurfaceShare = 0.002F;
+/// Relative error of intensity, uniform within.
+constexpr double kIntensityError = 0.05;
+
+/// Share of the power of each ray at a beam's side, a third of the full divergence off its middle: about a Gaussian's.
+constexpr double kSideShare = 0.15, kSideAngle = 1.0 / 3.0;
+
+/// Shots that are cast together, their rays line by line: rays of one line in a row are neighbours.
+struct Batch {
+  std::size_t shots = 0;
+  std::vector<Beam> beams;
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+  std::vector<Vector3d> points_W;  ///< where there is a hit
+
+  void resize(std::size_t shot_count, std::size_t lasers) {
+    shots = shot_count;
+    beams.resize(shots * lasers);
+    rays.resize(shots * lasers);
+    hits.resize(shots * lasers);
+    points_W.resize(shots * lasers);
+  }
+};
+
+/// A pulse that neighbours on other surfaces, and to which sides.
+struct Split {
+  std::size_t pulse = 0;
+  bool sideways = false, upwards = false;
+
+  std::size_t sides() const { return (sideways ? 2U : 0U) + (upwards ? 2U : 0U); }
+};
+
+struct Point {
+  Vector3f p_L;
+  float intensity;
+};
+
+/// Two unit vectors across a beam: to its left, level in L, and upwards.
+struct Across {
+  explicit Across(const Vector3d& direction_L)
+      : left_L(Vector3d(-direction_L.y(), direction_L.x(), 0.0).normalized()), up_L(direction_L.cross(left_L)) {}
+  Vector3d left_L, up_L;
+};
+
+/// Whether each of two hits lies on the plane through the other.
+bool same_surface(const Batch& batch, std::size_t i, std::size_t j) {
+  const Hit &hit = batch.hits[i], &other = batch.hits[j];
+  if (!hit || !other) return !hit && !other;
+  const Vector3f between_W = (batch.points_W[j] - batch.points_W[i]).cast<float>();
+  const float off_m = std::max(std::abs(between_W.dot(hit.normal_W)), std::abs(between_W.dot(other.normal_W)));
+  return off_m < kSameSurface_m + kSameSurfaceShare * std::min(hit.range_m, other.range_m);
+}
+
+/// One scan under way.
+class Scanner {
+ public:
+  Scanner(const RayLidar& lidar, const LidarRun& run, std::int64_t index)
+      : lidar_(lidar),
+        run_(run),
+        surfaces_(run.place.surfaces()),
+        index_(index),
+        start_(run.start + index * lidar.pattern.scan_period),
+        seed_(Random(run.seed, static_cast<std::uint64_t>(index)).bits()),
+        poses_(run.T_W_L, start_, start_ + lidar.pattern.scan_period + lidar.pattern.shot_period),
+        order_(by_line(lidar.pattern)) {}
+
+  LineScan scan(Arena& arena) {
+    LineScan result;
+    result.scan.start = start_;
+    const BeamPattern& pattern = lidar_.pattern;
+    const std::int64_t last = first_shot_of(pattern, index_ + 1), stride = kStep / pattern.shot_period;
+    for (std::int64_t first = first_shot_of(pattern, index_); first < last; first += stride)
+      add_step(first, static_cast<std::size_t>(std::min(stride, last - first)), arena, result);
+    return result;
+  }
+
+ private:
+  /// Laser indices by angle, so that neighbours in the list are neighbours in space.
+  static std::vector<std::size_t> by_line(const BeamPattern& pattern) {
+    std::vector<std::size_t> order(pattern.lasers.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::sort(order, {}, [&](std::size_t i) { return pattern.lasers[i].angle_rad; });
+    return order;
+  }
+
+  void add_step(std::int64_t first, std::size_t shots, Arena& arena, LineScan& result) {
+    const std::size_t lasers = order_.size();
+    const Time middle = run_.start + (first * 2 + static_cast<std::int64_t>(shots)) * lidar_.pattern.shot_period / 2;
+    run_.caster.move_to(run_.T_W_L(middle).translation(), to_seconds(middle - run_.start));
+    batch_.resize(shots, lasers);
+    points_.assign(shots * lasers, std::nullopt);
+    arena.for_chunks(shots, kChunk, [&](std::size_t begin, std::size_t end) { cast(first, begin, end); });
+    arena.for_chunks(shots, kChunk, [&](std::size_t begin, std::size_t end) { measure(first, begin, end); });
+    std::vector<std::size_t> row_of(lasers);
+    for (std::size_t row = 0; row < lasers; ++row) row_of[order_[row]] = row;
+    for (std::size_t shot = 0; shot < shots; ++shot)
+      for (const std::size_t row : row_of) {
+        const std::size_t i = row * shots + shot;
+        if (!points_[i]) continue;
+        result.scan.points_L.push_back(points_[i]->p_L);
+        result.scan.offsets.push_back(batch_.beams[i].offset);
+        result.scan.intensity.push_back(points_[i]->intensity);
+        result.line.push_back(batch_.beams[i].line);
+      }
+  }
+
+  /// Random numbers of one pulse: stage 0 where it points, 1 what becomes of it.
+  Random random(std::int64_t shot, std::size_t laser, int stage) const {
+    const auto pulse = static_cast<std::uint64_t>(shot) * lidar_.pattern.lasers.size() + laser;
+    return Random(seed_, 2 * pulse + static_cast<std::uint64_t>(stage));
+  }
+
+  void cast(std::int64_t first, std::size_t begin, std::size_t end) {
+    for (std::size_t shot = begin; shot < end; ++shot) {
+      const std::int64_t number = first + static_cast<std::int64_t>(shot);
+      const std::vector<Beam> beams = beams_of(lidar_.pattern, index_, number);
+      for (std::size_t row = 0; row < order_.size(); ++row) {
+        const Beam& beam = batch_.beams[row * batch_.shots + shot] = beams[order_[row]];
+        batch_.rays[row * batch_.shots + shot] = sent(beam, random(number, order_[row], 0));
+      }
+    }
+    for (std::size_t row = 0; row < order_.size(); ++row) {
+      const std::size_t offset = row * batch_.shots;
+      run_.caster.cast(std::span(batch_.rays).subspan(offset + begin, end - begin),
+                       std::span(batch_.hits).subspan(offset + begin, end - begin));
+      for (std::size_t i = offset + begin; i < offset + end; ++i)
+        batch_.points_W[i] =
+            batch_.rays[i].origin_W + static_cast<double>(batch_.hits[i].range_m) * batch_.rays[i].direction_W;
+    }
+  }
+
+  /// The ray that a beam really is.
+  Ray sent(const Beam& beam, Random noise) const {
+    const Across across(beam.direction_L);
+    const double left = lidar_.beam_sigma_rad * noise.gaussian(), up = lidar_.beam_sigma_rad * noise.gaussian();
+    return ray(beam, beam.direction_L + left * across.left_L + up * across.up_L);
+  }
+
+  Ray ray(const Beam& beam, const Vector3d& direction_L) const {
+    const PoseTable::Placed placed = poses_.place(start_ + beam.offset, direction_L);
+    return {.origin_W = placed.p_W, .direction_W = placed.direction_W};
+  }
+
+  void measure(std::int64_t first, std::size_t begin, std::size_t end) {
+    const std::vector<Split> splits = lidar_.divergence_left_rad > 0.0 ? at_edges(begin, end) : std::vector<Split>();
+    std::vector<Ray> rays;
+    for (const Split& split : splits) add_side_rays(split, rays);
+    std::vector<Hit> hits(rays.size());
+    run_.caster.cast(rays, hits);
+    std::size_t ray = 0;
+    auto split = splits.begin();
+    for (std::size_t row = 0; row < order_.size(); ++row)
+      for (std::size_t shot = begin; shot < end; ++shot) {
+        const std::size_t i = row * batch_.shots + shot;
+        const std::size_t sides = split != splits.end() && split->pulse == i ? (split++)->sides() : 0;
+        Echoes echoes;
+        const double middle_share = 1.0 - kSideShare * static_cast<double>(sides);
+        echoes.add(run_.caster, surfaces_, batch_.rays[i], batch_.hits[i], middle_share);
+        for (const std::size_t last = ray + sides; ray < last; ++ray)
+          echoes.add(run_.caster, surfaces_, rays[ray], hits[ray], kSideShare);
+        if (!echoes.empty())
+          points_[i] = point(batch_.beams[i], echoes, random(first + static_cast<std::int64_t>(shot), order_[row], 1));
+      }
+  }
+
+  /// Pulses, ascending, some of whose neighbours, before and after them or on the lines beside them, lie on other
+  /// surfaces.
+  std::vector<Split> at_edges(std::size_t begin, std::size_t end) const {
+    const std::size_t shots = batch_.shots, rows = order_.size(), width = end - begin;
+    std::vector<Split> pulses(rows * width);
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t shot = begin; shot < end; ++shot) {
+        const std::size_t i = row * shots + shot, own = row * width + shot - begin;
+        pulses[own].pulse = i;
+        if (shot == begin && shot > 0 && !same_surface(batch_, i - 1, i)) pulses[own].sideways = true;
+        if (shot + 1 < shots && !same_surface(batch_, i, i + 1)) {
+          pulses[own].sideways = true;
+          if (shot + 1 < end) pulses[own + 1].sideways = true;
+        }
+        if (row + 1 < rows && !same_surface(batch_, i, i + shots))
+          pulses[own].upwards = pulses[own + width].upwards = true;
+      }
+    std::erase_if(pulses, [](const Split& split) { return split.sides() == 0; });
+    return pulses;
+  }
+
+  std::optional<Point> point(const Beam& beam, Echoes& echoes, Random random) const {
+    const double luck = random.gaussian(), range_error = random.gaussian(), intensity_error = random.uniform(-1.0, 1.0);
+    const std::optional<Echo> echo = echoes.reported(lidar_, luck);
+    if (!echo) return std::nullopt;
+    double range_m = echo->range_m + lidar_.range_sigma_m * range_error;
+    if (lidar_.range_step_m > 0.0) range_m = lidar_.range_step_m * std::round(range_m / lidar_.range_step_m);
+    if (range_m <= 0.0 || range_m < lidar_.min_range_m || range_m > lidar_.max_range_m) return std::nullopt;
+    const double brightness = echo->brightness * (1.0 + kIntensityError * intensity_error);
+    const double counts = std::clamp(std::round(static_cast<double>(lidar_.counts_at_white) * brightness), 0.0, 255.0);
+    return Point{.p_L = (range_m * beam.direction_L).cast<float>(), .intensity = static_cast<float>(counts)};
+  }
+
+  void add_side_rays(const Split& split, std::vector<Ray>& rays) const {
+    const Beam& beam = batch_.beams[split.pulse];
+    const Ray& middle = batch_.rays[split.pulse];
+    const Across across(beam.direction_L);
+    const auto add_pair = [&](const Vector3d& aside_L, double divergence_rad) {
+      const Vector3d aside_W = kSideAngle * divergence_rad * ray(beam, aside_L).direction_W;
+      for (const double sign : {1.0, -1.0})
+        rays.push_back(
+            {.origin_W = middle.origin_W, .direction_W = (middle.direction_W + sign * aside_W).normalized()});
+    };
+    if (split.sideways) add_pair(across.left_L, lidar_.divergence_left_rad);
+    if (split.upwards) add_pair(across.up_L, lidar_.divergence_up_rad);
+  }
+
+  const RayLidar& lidar_;
+  const LidarRun& run_;
+  const std::vector<Surface>& surfaces_;
+  std::int64_t index_;
+  Time start_;
+  std::uint64_t seed_;
+  PoseTable poses_;
+  std::vector<std::size_t> order_;  ///< laser of each row of the batch
+  Batch batch_;
+  std::vector<std::optional<Point>> points_;
+};
+
+}  // namespace
+
+LineScan simulate_scan(const RayLidar& lidar, const LidarRun& run, std::int64_t index, Arena& arena) {
+  return Scanner(lidar, run, index).scan(arena);
+}
+
+}  // namespace pllit
