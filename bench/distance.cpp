@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
   double next_m = 100.0, sum_ms = 0.0;
   int frames = 0;
   const auto report = [&](const FrameEstimate& frame) -> Expected<void> {
-    for (std::size_t i = 1; i < stage_names.size(); ++i) sum_ms += frame.stage_ms[i];  // without reading: that is the simulator
+    for (std::size_t i = 1; i < stage_names.size(); ++i)
+      sum_ms += frame.stage_ms[i];  // without reading: that is the simulator
     ++frames;
     if (summary.length_m < next_m) return {};
     std::printf("%10.0f %10d %12.2f %12.1f\n", summary.length_m, summary.frames, sum_ms / frames, resident_mb());

@@ -47,7 +47,8 @@ Scene make_scene() {
 
 void deskewing(benchmark::State& state) {
   const Scene scene = make_scene();
-  for (auto _ : state) benchmark::DoNotOptimize(deskew(scene.scan, scene.motion.path, scene.rig.T_I_L, scene.rig.lidar));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(deskew(scene.scan, scene.motion.path, scene.rig.T_I_L, scene.rig.lidar));
   state.counters["points"] = static_cast<double>(scene.scan.points_L.size());
 }
 
@@ -70,7 +71,8 @@ void matching(benchmark::State& state) {
   const Scene scene = make_scene();
   Arena arena(static_cast<int>(state.range(0)));
   for (auto _ : state) {
-    PlaneResiduals residuals(scene.sparse, scene.map, scene.rig, Matrix6(1e-4 * Matrix6::Identity()), scene.config.planes, arena);
+    PlaneResiduals residuals(scene.sparse, scene.map, scene.rig, Matrix6(1e-4 * Matrix6::Identity()),
+                             scene.config.planes, arena);
     benchmark::DoNotOptimize(iterated_update(
         scene.motion.predicted, [&](const NavState& x) { return residuals(x).sums; }, scene.config.filter));
   }

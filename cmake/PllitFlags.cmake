@@ -28,7 +28,9 @@ if(PLLIT_SANITIZE)
   if(PLLIT_FUZZ)
     list(APPEND sanitizers -fsanitize=fuzzer-no-link)
   endif()
-  target_compile_options(pllit_flags INTERFACE ${sanitizers} -O1)
+  # With the assertions of Eigen and of the standard library. -Og -g1 compiles in three fifths of the time of -O1 -g.
+  target_compile_options(pllit_flags INTERFACE ${sanitizers} -Og -g1 -UNDEBUG)
+  target_compile_definitions(pllit_flags INTERFACE _GLIBCXX_ASSERTIONS)
   target_link_options(pllit_flags INTERFACE ${sanitizers})
 endif()
 # -O2 runs as fast as -O3 here and compiles in half the time.

@@ -1,8 +1,8 @@
 #include "interrupt.hpp"
 
+#include <unistd.h>
 #include <csignal>
 #include <ctime>
-#include <unistd.h>
 
 namespace pllit::app {
 namespace {

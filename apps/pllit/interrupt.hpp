@@ -6,8 +6,8 @@
 
 namespace pllit::app {
 
-/// While it lives, the first signal requests a stop; the second one ends the process at once. Make it before other threads start: they
-/// inherit that the signals are blocked.
+/// While it lives, the first signal requests a stop; the second one ends the process at once. Make it before other
+/// threads start: they inherit that the signals are blocked.
 class Interrupt {
  public:
   Interrupt();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <format>
+#include <nlohmann/json.hpp>
 
 #include "pllit/io/bag_reader.hpp"
 #include "pllit/io/tum.hpp"
@@ -27,8 +28,10 @@ std::optional<TimeUnit> point_time_unit(PointTimeUnit unit) {
 Expected<OpenedSource> open_simulator(const std::string& address, Images images) {
   auto simulation = open_simulation_with_files(address, images);
   if (!simulation) return std::unexpected(simulation.error());
-  OpenedSource opened{.events = nullptr, .rig = simulation->rig(), .truth = simulation->truth(), .name = address};
-  opened.events = std::make_unique<Simulation>(std::move(*simulation));
+  OpenedSource opened{.events = nullptr, .rig = simulation->rig(), .truth = simulation->truth(), .scene_json = {}, .name = address};
+  auto events = std::make_unique<Simulation>(std::move(*simulation));
+  opened.scene_json = [&truth = *events, address] { return scene_json(truth.scene_truth(), address).dump(2); };
+  opened.events = std::move(events);
   return opened;
 }
 
@@ -41,7 +44,7 @@ Expected<OpenedSource> open_recording(const std::vector<std::string>& sources, c
                                 .point_time_unit = point_time_unit(config.input.lidar_time_unit)});
   if (!bags) return std::unexpected(bags.error());
   return OpenedSource{
-      .events = std::move(*bags), .rig = make_rig(config.rig), .truth = {}, .name = paths.front().stem().string()};
+      .events = std::move(*bags), .rig = make_rig(config.rig), .truth = {}, .scene_json = {}, .name = paths.front().stem().string()};
 }
 
 /// Where a motion's file lies: as it is named, or among the recordings.

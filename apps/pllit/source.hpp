@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct OpenedSource {
   std::unique_ptr<EventSource> events;
   Rig rig;
   Trajectory truth;  ///< empty for recordings
+  std::function<std::string()> scene_json;  ///< what a simulation knows besides, as far as it has run; empty for recordings
   std::string name;  ///< for the session folder
 };
 

@@ -51,9 +51,10 @@ std::string summary_text(const Json& json) {
       "health      {} at the end; frames good {}, degraded {}, lost {}\n"
       "start       {}\n",
       json["frames"].get<int>(), json["duration_s"].get<double>(), json["length_m"].get<double>(),
-      json["real_time_factor"].get<double>(), json["frame_ms"]["mean"].get<double>(), json["frame_ms"]["p99"].get<double>(),
-      json["peak_memory_mb"].get<double>(), health["state"].get<std::string>(), health["good"].get<int>(),
-      health["degraded"].get<int>(), health["lost"].get<int>(), json["start"].get<std::string>());
+      json["real_time_factor"].get<double>(), json["frame_ms"]["mean"].get<double>(),
+      json["frame_ms"]["p99"].get<double>(), json["peak_memory_mb"].get<double>(), health["state"].get<std::string>(),
+      health["good"].get<int>(), health["degraded"].get<int>(), health["lost"].get<int>(),
+      json["start"].get<std::string>());
   if (json.contains("ape"))
     text += std::format("APE         rmse {:.4f} m, median {:.4f} m, max {:.4f} m ({} poses)\n",
                         json["ape"]["rmse"].get<double>(), json["ape"]["median"].get<double>(),

@@ -40,14 +40,19 @@ Json topics_json(const std::vector<std::string>& sources) {
 }
 
 Json stream_json(const StreamFacts& facts) {
-  return {{"messages", facts.count},           {"rate_hz", facts.rate_hz},
-          {"longest_gap_s", facts.longest_gap_s}, {"gaps", facts.gaps},
-          {"not_ascending", facts.not_ascending}, {"behind_recorder_s", facts.delay_median_s},
+  return {{"messages", facts.count},
+          {"rate_hz", facts.rate_hz},
+          {"longest_gap_s", facts.longest_gap_s},
+          {"gaps", facts.gaps},
+          {"not_ascending", facts.not_ascending},
+          {"behind_recorder_s", facts.delay_median_s},
           {"jitter_s", facts.delay_spread_s}};
 }
 
 Json inspection_json(const Inspection& inspection) {
-  Json json{{"imu", stream_json(inspection.imu)}, {"lidar", stream_json(inspection.lidar)}, {"camera", stream_json(inspection.camera)}};
+  Json json{{"imu", stream_json(inspection.imu)},
+            {"lidar", stream_json(inspection.lidar)},
+            {"camera", stream_json(inspection.camera)}};
   if (inspection.accel_unit) json["imu"]["unit"] = *inspection.accel_unit == AccelUnit::g ? "g" : "m/s2";
   if (inspection.first_second) {
     json["imu"]["still_at_start"] = inspection.first_second->still;
@@ -68,31 +73,38 @@ Json inspection_json(const Inspection& inspection) {
 
 std::string stream_text(const char* name, const Json& stream) {
   if (stream["messages"] == 0) return std::format("{:<8} none\n", name);
-  return std::format("{:<8} {} messages, {:.1f} Hz, longest gap {:.3f} s, {} gaps, {} stamps out of order; stamps {:.3f} s before the recorder's clock, jitter {:.3f} s\n",
-                     name, stream["messages"].get<int>(), stream["rate_hz"].get<double>(), stream["longest_gap_s"].get<double>(),
-                     stream["gaps"].get<int>(), stream["not_ascending"].get<int>(), stream["behind_recorder_s"].get<double>(),
-                     stream["jitter_s"].get<double>());
+  return std::format(
+      "{:<8} {} messages, {:.1f} Hz, longest gap {:.3f} s, {} gaps, {} stamps out of order; stamps {:.3f} s before the "
+      "recorder's clock, jitter {:.3f} s\n",
+      name, stream["messages"].get<int>(), stream["rate_hz"].get<double>(), stream["longest_gap_s"].get<double>(),
+      stream["gaps"].get<int>(), stream["not_ascending"].get<int>(), stream["behind_recorder_s"].get<double>(),
+      stream["jitter_s"].get<double>());
 }
 
 std::string text_of(const Json& json) {
   std::string text;
   for (const Json& topic : json["topics"])
-    text += std::format("{:<32} {:<36} {:>8} messages {:>8.1f} Hz\n", topic["name"].get<std::string>(), topic["type"].get<std::string>(),
-                        topic["messages"].get<std::size_t>(), topic["rate_hz"].get<double>());
+    text += std::format("{:<32} {:<36} {:>8} messages {:>8.1f} Hz\n", topic["name"].get<std::string>(),
+                        topic["type"].get<std::string>(), topic["messages"].get<std::size_t>(),
+                        topic["rate_hz"].get<double>());
   if (json.contains("imu")) {
     const Json &imu = json["imu"], &lidar = json["lidar"];
     text += "\n" + stream_text("IMU", imu);
     if (imu.contains("still_at_start"))
-      text += std::format("         accelerometer in {}; {} in the first second (gyro spread {:.4f} rad/s, mean rate {:.4f} rad/s)\n",
-                          imu["unit"].get<std::string>(), imu["still_at_start"].get<bool>() ? "still" : "moving",
-                          imu["gyro_spread_rps"].get<double>(), imu["mean_rate_rps"].get<double>());
+      text += std::format(
+          "         accelerometer in {}; {} in the first second (gyro spread {:.4f} rad/s, mean rate {:.4f} rad/s)\n",
+          imu["unit"].get<std::string>(), imu["still_at_start"].get<bool>() ? "still" : "moving",
+          imu["gyro_spread_rps"].get<double>(), imu["mean_rate_rps"].get<double>());
     text += stream_text("LiDAR", lidar);
-    text += std::format("         {:.0f} points a scan, {:.4f} s from first to last; point times: {}\n", lidar["points_per_scan"].get<double>(),
-                        lidar["scan_span_s"].get<double>(), json.value("point_times", std::string("as simulated")));
+    text += std::format("         {:.0f} points a scan, {:.4f} s from first to last; point times: {}\n",
+                        lidar["points_per_scan"].get<double>(), lidar["scan_span_s"].get<double>(),
+                        json.value("point_times", std::string("as simulated")));
     text += stream_text("camera", json["camera"]);
     text += json["imu_to_lidar_offset_s"].is_number()
-                ? std::format("clocks   IMU and LiDAR agree at an offset of {:+.3f} s\n", json["imu_to_lidar_offset_s"].get<double>())
-                : std::format("clocks   offset of IMU and LiDAR not found: {}\n", json["imu_to_lidar_offset_reason"].get<std::string>());
+                ? std::format("clocks   IMU and LiDAR agree at an offset of {:+.3f} s\n",
+                              json["imu_to_lidar_offset_s"].get<double>())
+                : std::format("clocks   offset of IMU and LiDAR not found: {}\n",
+                              json["imu_to_lidar_offset_reason"].get<std::string>());
   }
   for (const Json& note : json["notes"]) text += "note     " + note.get<std::string>() + "\n";
   for (const Json& warning : json["warnings"]) text += "warning  " + warning.get<std::string>() + "\n";
@@ -102,7 +114,9 @@ std::string text_of(const Json& json) {
 }
 
 std::string shell_quoted(const std::string& word) {
-  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./=:,%@") == std::string::npos) return word;
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./=:,%@") ==
+      std::string::npos)
+    return word;
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
@@ -131,7 +145,8 @@ Expected<void> inspect(OpenedSource source, const Config& config, Json& json) {
   json.update(inspection_json(inspector.finish()));
   json["notes"] = source.events->notes();
   if (const auto* bags = dynamic_cast<const BagSource*>(source.events.get()))
-    if (const auto layout = bags->time_layout()) json["point_times"] = std::format("field {} ({}), {} in {}", layout->field, layout->datatype,
+    if (const auto layout = bags->time_layout())
+      json["point_times"] = std::format("field {} ({}), {} in {}", layout->field, layout->datatype,
                                         layout->absolute ? "absolute" : "relative", name_of(layout->unit));
   return {};
 }
@@ -139,11 +154,13 @@ Expected<void> inspect(OpenedSource source, const Config& config, Json& json) {
 Expected<Json> diagnose(const Options& options) {
   const auto config = read_config(options.config, options.settings);
   if (!config) return std::unexpected(config.error());
-  Json json{{"schema_version", kSchemaVersion}, {"topics", topics_json(options.sources)}, {"notes", Json::array()},
-            {"warnings", Json::array()},        {"problems", Json::array()},              {"run", nullptr}};
+  Json json{{"schema_version", kSchemaVersion}, {"topics", topics_json(options.sources)},
+            {"notes", Json::array()},           {"warnings", Json::array()},
+            {"problems", Json::array()},        {"run", nullptr}};
   auto source = open_source(options.sources, *config, Images::wanted);
   if (!source && json["topics"].empty()) return std::unexpected(source.error());
-  const auto inspected = source ? inspect(std::move(*source), *config, json) : Expected<void>(std::unexpected(source.error()));
+  const auto inspected =
+      source ? inspect(std::move(*source), *config, json) : Expected<void>(std::unexpected(source.error()));
   if (!inspected) json["problems"].push_back(inspected.error().message);
   if (json["problems"].empty()) json["run"] = run_command(options);
   return json;
@@ -161,9 +178,15 @@ ExitCode run(const Options& options) {
 Verb add_doctor(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("doctor", "Examine a recording: rates, gaps, clocks, units, what is missing");
   const auto options = std::make_shared<Options>();
-  verb->add_option("source", options->sources, "ROS 1 bags of one recording, or sim:SCENE?key=value&...")->type_name("SOURCE...")->required();
-  verb->add_option("--config", options->config, "Preset or YAML file, for topics and extrinsics")->type_name("FILE|PRESET");
-  verb->add_option("--set", options->settings, "Replace one value of the configuration")->type_name("KEY=VALUE")->take_all()->expected(1);
+  verb->add_option("source", options->sources, "ROS 1 bags of one recording, or sim:SCENE?key=value&...")
+      ->type_name("SOURCE...")
+      ->required();
+  verb->add_option("--config", options->config, "Preset or YAML file, for topics and extrinsics")
+      ->type_name("FILE|PRESET");
+  verb->add_option("--set", options->settings, "Replace one value of the configuration")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->expected(1);
   verb->add_flag("--json", options->json, "Print JSON");
   verb->footer("Examples:\n  pllit doctor drive.bag --config kitti");
   return {verb, [options] { return run(*options); }};

@@ -9,6 +9,7 @@
 #include "interrupt.hpp"
 #include "pllit/eval/evaluate.hpp"
 #include "pllit/eval/scores_json.hpp"
+#include "pllit/io/file.hpp"
 #include "pllit/io/session.hpp"
 #include "pllit/io/tum.hpp"
 #include "pllit/slam/config_yaml.hpp"
@@ -101,6 +102,8 @@ class SessionRun {
     const char* status = !result ? "failed" : summary.interrupted ? "interrupted" : "done";
     auto json = run_json(summary, options_, config_, status);
     if (!result) json["error"] = result.error().message;
+    if (source_.scene_json)
+      if (auto done = write_file(session_.folder() / "scene.json", source_.scene_json() + "\n"); !done) return std::unexpected(done.error());
     const auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
     if (!scored) json["notes"].push_back(scored.error().message);
     if (auto done = session_.write_run(json); !done) return std::unexpected(done.error());

@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <format>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -12,6 +11,7 @@
 #include "interrupt.hpp"
 #include "pllit/io/bag_writer.hpp"
 #include "pllit/io/csv.hpp"
+#include "pllit/io/file.hpp"
 #include "pllit/io/tum.hpp"
 #include "pllit/sim/sequences.hpp"
 #include "program.hpp"
@@ -30,7 +30,7 @@ struct Options {
   std::vector<std::string> settings;
   std::string cloud_time = "driver";
   int jpeg = 0;
-  bool list = false, overwrite = false;
+  bool list = false, json = false, overwrite = false;
 };
 
 /// How a rig's drivers name and lay out what they publish.
@@ -44,9 +44,12 @@ Topics topics_of(const SceneTruth& scene, const std::string& cloud_time) {
   using Field = PointCloud2Layout::TimeField;
   Topics topics{"/imu/data", "/points", "/camera/image_raw", "/camera/counts", false, {}};
   if (scene.rig == "hilti2022")
-    topics = {"/alphasense/imu", "/hesai/pandar", "/alphasense/cam0/image_raw", "", false, {.time_field = Field::timestamp}};
-  if (scene.rig == "ntu4dradlm") topics = {"/livox/imu", "/livox/lidar", "/thermal_cam/thermal_image", "/thermal_cam/counts", true, {}};
-  if (scene.rig == "inspection") topics = {"/imu/data", "/livox/lidar", "/thermal/image_agc", "/thermal/image_raw", true, {}};
+    topics = {
+        "/alphasense/imu", "/hesai/pandar", "/alphasense/cam0/image_raw", "", false, {.time_field = Field::timestamp}};
+  if (scene.rig == "ntu4dradlm")
+    topics = {"/livox/imu", "/livox/lidar", "/thermal_cam/thermal_image", "/thermal_cam/counts", true, {}};
+  if (scene.rig == "inspection")
+    topics = {"/imu/data", "/livox/lidar", "/thermal/image_agc", "/thermal/image_raw", true, {}};
   if (cloud_time == "seconds") topics.cloud = {.time_field = Field::time, .time_unit = TimeUnit::seconds};
   if (cloud_time == "microseconds") topics.cloud = {.time_field = Field::time, .time_unit = TimeUnit::microseconds};
   return topics;
@@ -71,8 +74,9 @@ class Recorder {
     if (counts || jpeg_ == 0) return bag_.write_image(topic, received, frame);
     std::vector<std::uint8_t> file;
     cv::imencode(".jpg", frame.counts, file, {cv::IMWRITE_JPEG_QUALITY, jpeg_});
-    return bag_.write(topic + "/compressed", kCompressedImageType, received,
-                      encode_compressed_image(frame.time, "mono8; jpeg compressed ", std::as_bytes(std::span(file)), "camera"));
+    return bag_.write(
+        topic + "/compressed", kCompressedImageType, received,
+        encode_compressed_image(frame.time, "mono8; jpeg compressed ", std::as_bytes(std::span(file)), "camera"));
   }
 
   BagWriter& bag_;
@@ -89,15 +93,9 @@ std::string address_of(const Options& options) {
   return address;
 }
 
-Expected<void> write_text(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file);
-  stream << text << '\n';
-  stream.flush();
-  return stream ? Expected<void>{} : failure(std::format("'{}' cannot be written; is the disk full?", file.string()));
-}
-
 Expected<void> write_biases(const fs::path& file, const std::vector<StampedImuBias>& biases) {
-  const std::vector<std::string> columns{"t_s", "gyro_x_rps", "gyro_y_rps", "gyro_z_rps", "accel_x_mps2", "accel_y_mps2", "accel_z_mps2"};
+  const std::vector<std::string> columns{"t_s",          "gyro_x_rps",   "gyro_y_rps",  "gyro_z_rps",
+                                         "accel_x_mps2", "accel_y_mps2", "accel_z_mps2"};
   auto csv = CsvWriter::create(file, columns);
   if (!csv) return std::unexpected(csv.error());
   for (std::size_t i = 0; i < biases.size(); i += 100) {  // they walk slowly
@@ -135,12 +133,14 @@ Expected<ExitCode> simulate(const Options& options) {
   if (!bag) return std::unexpected(bag.error());
   const auto beside = [&](const char* extension) { return fs::path(bag_path).replace_extension(extension); };
   if (auto done = write_tum(beside(".tum"), simulation->truth()); !done) return std::unexpected(done.error());
-  if (auto done = write_biases(beside(".biases.csv"), simulation->true_biases()); !done) return std::unexpected(done.error());
+  if (auto done = write_biases(beside(".biases.csv"), simulation->true_biases()); !done)
+    return std::unexpected(done.error());
   Recorder recorder(*bag, topics_of(simulation->scene_truth(), options.cloud_time), options.jpeg);
   const auto recorded = record(*simulation, recorder);
   if (auto closed = bag->close(); !closed) return std::unexpected(closed.error());
   if (!recorded) return std::unexpected(recorded.error());
-  if (auto done = write_text(beside(".scene.json"), scene_json(simulation->scene_truth(), address).dump(2)); !done)
+  if (auto done = replace_file(beside(".scene.json"), scene_json(simulation->scene_truth(), address).dump(2) + "\n");
+      !done)
     return std::unexpected(done.error());
   std::puts(bag_path.c_str());
   return ExitCode::done;
@@ -153,13 +153,27 @@ void print_list() {
   for (const Sequence& row : sequences()) std::printf("  %-4s %s\n", row.name.c_str(), row.source.c_str());
   std::puts("Keys (b: boxes only, w: all but boxes):");
   for (const SimKey& key : sim_keys())
-    std::printf("  %c %-12s %s\n", key.scenes == SimKey::For::all ? ' ' : key.scenes == SimKey::For::boxes ? 'b' : 'w',
+    std::printf("  %c %-12s %s\n",
+                key.scenes == SimKey::For::all     ? ' '
+                : key.scenes == SimKey::For::boxes ? 'b'
+                                                   : 'w',
                 std::string(key.name).c_str(), key.wants.c_str());
+}
+
+void print_list_json() {
+  nlohmann::ordered_json json{{"schema_version", kSchemaVersion}, {"scenes", scene_names()}};
+  for (const Sequence& row : sequences())
+    json["rows"].push_back({{"name", row.name},
+                            {"source", row.source},
+                            {"config", row.config},
+                            {"tier", kTierNames[static_cast<std::size_t>(row.tier)]}});
+  for (const SimKey& key : sim_keys()) json["keys"].push_back({{"name", key.name}, {"wants", key.wants}});
+  std::puts(json.dump(2).c_str());
 }
 
 ExitCode run(const Options& options) {
   if (options.list) {
-    print_list();
+    options.json ? print_list_json() : print_list();
     return ExitCode::done;
   }
   if (options.scene.empty() || options.out.empty())
@@ -171,19 +185,29 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 Verb add_simulate(CLI::App& program) {
-  CLI::App* verb = program.add_subcommand("simulate", "Write a simulated recording as a ROS 1 bag, with the truth beside it");
+  CLI::App* verb =
+      program.add_subcommand("simulate", "Write a simulated recording as a ROS 1 bag, with the truth beside it");
   const auto options = std::make_shared<Options>();
-  verb->add_option("scene", options->scene, "Scene, row of the table of sequences, or sim:SCENE?key=value&...")->type_name("SCENE");
-  verb->add_option("--out", options->out, "Bag to write; F.tum, F.biases.csv and F.scene.json come beside it")->type_name("F.bag");
+  verb->add_option("scene", options->scene, "Scene, row of the table of sequences, or sim:SCENE?key=value&...")
+      ->type_name("SCENE");
+  verb->add_option("--out", options->out, "Bag to write; F.tum, F.biases.csv and F.scene.json come beside it")
+      ->type_name("F.bag");
   verb->add_option("--seed", options->seed, "Of everything that is drawn")->type_name("N");
   verb->add_option("--duration", options->duration_s, "Seconds (default: the whole motion)")->type_name("S");
-  verb->add_option("--set", options->settings, "A key of the simulation, e.g. light=night")->type_name("KEY=VALUE")->take_all()->expected(1);
-  verb->add_option("--cloud-time", options->cloud_time, "Of PointCloud2: as the sensor's driver, or float32 `time` in seconds or microseconds")
+  verb->add_option("--set", options->settings, "A key of the simulation, e.g. light=night")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->expected(1);
+  verb->add_option("--cloud-time", options->cloud_time,
+                   "Of PointCloud2: as the sensor's driver, or float32 `time` in seconds or microseconds")
       ->check(CLI::IsMember({"driver", "seconds", "microseconds"}).description(""))
       ->type_name("driver|seconds|microseconds");
-  verb->add_option("--jpeg", options->jpeg, "Compress 8-bit images with this quality")->check(CLI::Range(1, 100).description(""))->type_name("1..100");
+  verb->add_option("--jpeg", options->jpeg, "Compress 8-bit images with this quality")
+      ->check(CLI::Range(1, 100).description(""))
+      ->type_name("1..100");
   verb->add_flag("--overwrite", options->overwrite, "Replace the bag if it exists");
   verb->add_flag("--list", options->list, "Show scenes, rows and keys");
+  verb->add_flag("--json", options->json, "With --list: as JSON");
   verb->footer(
       "Examples:\n"
       "  pllit simulate plant --seed 3 --duration 60 --set finding=pipe --out plant.bag\n"

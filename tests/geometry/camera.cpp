@@ -11,13 +11,25 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 Camera fisheye() {  // Hilti 2022, cam0
-  return {.width = 720, .height = 540, .fx = 351.314, .fy = 351.491, .cx = 367.852, .cy = 253.840,
-          .distortion = Camera::Distortion::equidistant, .k = {-0.036967, -0.008918, 0.008913, -0.003769, 0.0}};
+  return {.width = 720,
+          .height = 540,
+          .fx = 351.314,
+          .fy = 351.491,
+          .cx = 367.852,
+          .cy = 253.840,
+          .distortion = Camera::Distortion::equidistant,
+          .k = {-0.036967, -0.008918, 0.008913, -0.003769, 0.0}};
 }
 
 Camera pinhole() {
-  return {.width = 640, .height = 512, .fx = 457.2, .fy = 457.9, .cx = 323.1, .cy = 242.5,
-          .distortion = Camera::Distortion::radtan, .k = {-0.35, 0.12, 0.001, -0.0005, -0.02}};
+  return {.width = 640,
+          .height = 512,
+          .fx = 457.2,
+          .fy = 457.9,
+          .cx = 323.1,
+          .cy = 242.5,
+          .distortion = Camera::Distortion::radtan,
+          .k = {-0.35, 0.12, 0.001, -0.0005, -0.02}};
 }
 
 TEST(Camera, RayUndoesProjectOnTheWholeImage) {

@@ -1,37 +1,15 @@
-// What the tests of writers share: a disk that fills up, and a cloud.
+// What the tests of writers share: a disk that fills up, a cloud, and a look at bytes.
 #pragma once
 
-#include <sys/resource.h>
-
-#include <csignal>
 #include <cstring>
 #include <random>
 #include <string>
 
 #include "pllit/state/table.hpp"
+#include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pllit::test {
-
-/// While it lives no file of this process grows beyond `bytes`: writes fail as on a full disk.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : signal_before_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, signal_before_);
-  }
-
- private:
-  void (*signal_before_)(int);
-  rlimit before_{};
-};
 
 /// Points within 50 m of (100, -20, 3), with two scalar fields that tell each point and field from the others.
 inline PointTable some_points(std::size_t count, unsigned seed) {

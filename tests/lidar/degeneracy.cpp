@@ -11,7 +11,8 @@ namespace {
 
 using test::Random;
 
-/// Equations of points on planes with the given normals, as a scan would give them; `tilt_rad`: error of the planes' normals.
+/// Equations of points on planes with the given normals, as a scan
+/// would give them; `tilt_rad`: error of the planes' normals.
 PlaneEquations equations_of(Random& random, const std::vector<Vector3d>& normals, double tilt_rad, int points = 3000) {
   PlaneEquations equations;
   constexpr double weight = 1.0 / (0.02 * 0.02);
@@ -27,7 +28,9 @@ PlaneEquations equations_of(Random& random, const std::vector<Vector3d>& normals
     ++equations.sums.inliers;
     Eigen::Matrix<double, 6, 3> J_row_normal;
     J_row_normal << skew(p), Matrix3d::Identity();
-    equations.noise_information += weight * J_row_normal * (tilt_rad * tilt_rad * (Matrix3d::Identity() - n * n.transpose())) * J_row_normal.transpose();
+    equations.noise_information += weight * J_row_normal *
+                                   (tilt_rad * tilt_rad * (Matrix3d::Identity() - n * n.transpose())) *
+                                   J_row_normal.transpose();
   }
   return equations;
 }
@@ -62,14 +65,17 @@ TEST(Degeneracy, FindsTheAxisOfACorridorThatNoisyNormalsSeemToObserve) {
 
 TEST(Degeneracy, FindsAllThreeFreedomsOnASinglePlane) {
   Random random(43);
-  const ObservedEquations observed = observed_part(equations_of(random, {Vector3d::UnitZ()}, 0.0), SO3::Identity(), {}, {});
+  const ObservedEquations observed =
+      observed_part(equations_of(random, {Vector3d::UnitZ()}, 0.0), SO3::Identity(), {}, {});
   EXPECT_EQ(observed.localizability.degenerate, 3);  // x, y and heading
 }
 
 TEST(Degeneracy, GivesNormalEquationsWithoutNegativeInformation) {
   Random random(44);
   for (int i = 0; i < 20; ++i) {
-    const ObservedEquations observed = observed_part(equations_of(random, {random.vector().normalized(), random.vector().normalized()}, 0.02), SO3::Identity(), {}, {});
+    const ObservedEquations observed =
+        observed_part(equations_of(random, {random.vector().normalized(), random.vector().normalized()}, 0.02),
+                      SO3::Identity(), {}, {});
     const Matrix6 H = observed.sums.H.topLeftCorner<6, 6>();
     EXPECT_LT((H - H.transpose()).norm(), 1e-6 * H.norm());
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix6>(H).eigenvalues()[0], -1e-6 * H.norm());
@@ -77,8 +83,8 @@ TEST(Degeneracy, GivesNormalEquationsWithoutNegativeInformation) {
 }
 
 TEST(Degeneracy, GivesNoInformationAlongACorridorHoweverManyNoisyScansAddUp) {
-  // Each scan's weakest direction is off the axis by the noise of its normals. Taken out as it is, every scan would leave
-  // a little information along the true axis, and hundreds of them much.
+  // Each scan's weakest direction is off the axis by the noise of its normals. Taken out as it is, every scan would
+  // leave a little information along the true axis, and hundreds of them much.
   Random random(45);
   DegenerateDirections held;
   double information = 0.0, across = 0.0, naive = 0.0;
@@ -91,7 +97,10 @@ TEST(Degeneracy, GivesNoInformationAlongACorridorHoweverManyNoisyScansAddUp) {
     axis.head<3>() /= std::sqrt(equations.lever2_m2 / equations.weight);
     information += axis.dot(observed.sums.H.topLeftCorner<6, 6>() * axis);
     across += observed.sums.H(4, 4);
-    naive += observed_part(equations, SO3::Identity(), {}, {}).sums.H.topLeftCorner<6, 6>().cwiseProduct(axis * axis.transpose()).sum();
+    naive += observed_part(equations, SO3::Identity(), {}, {})
+                 .sums.H.topLeftCorner<6, 6>()
+                 .cwiseProduct(axis * axis.transpose())
+                 .sum();
   }
   EXPECT_LT(information, 1e-9 * across);
   EXPECT_GT(naive, 1e-8 * across);

@@ -43,7 +43,8 @@ std::vector<Vector3d> by_brute_force(const LidarScan& scan, const MotionPath& pa
   const SE3 T_W_end = path.pose_at(path.nodes.back().time);
   std::vector<Vector3d> points;
   for (std::size_t i = 0; i < scan.points_L.size(); ++i)
-    points.push_back((T_W_end.inverse() * path.pose_at(scan.start + scan.offsets[i]) * T_I_L).act(scan.points_L[i].cast<double>()));
+    points.push_back(
+        (T_W_end.inverse() * path.pose_at(scan.start + scan.offsets[i]) * T_I_L).act(scan.points_L[i].cast<double>()));
   return points;
 }
 
@@ -57,7 +58,8 @@ TEST(Deskew, EqualsItsBruteForceTwinAtAnyImuRate) {
     const auto twin = by_brute_force(scan, path, T_I_L);
     ASSERT_EQ(cloud.points_I.size(), twin.size());
     double worst_m = 0.0;
-    for (std::size_t i = 0; i < twin.size(); ++i) worst_m = std::max(worst_m, (cloud.points_I[i].cast<double>() - twin[i]).norm());
+    for (std::size_t i = 0; i < twin.size(); ++i)
+      worst_m = std::max(worst_m, (cloud.points_I[i].cast<double>() - twin[i]).norm());
     EXPECT_LT(worst_m, 2e-5) << rate_hz << " Hz";  // float points tens of metres away resolve 4e-6 m
   }
 }
@@ -89,7 +91,8 @@ TEST(Deskew, KeepsOnlyPointsWithinTheRange) {
   scan.points_L = {{0.3F, 0.0F, 0.0F}, {5.0F, 0.0F, 0.0F}, {200.0F, 0.0F, 0.0F}};
   scan.offsets = {0ms, 1ms, 2ms};
   scan.intensity = {1.0F, 2.0F, 3.0F};
-  const MotionPath path{{PathNode{Time{}, SO3::Identity(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}}};
+  const MotionPath path{
+      {PathNode{Time{}, SO3::Identity(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}}};
   EXPECT_THAT(deskew(scan, path, SE3::Identity(), {.min_range_m = 0.5, .max_range_m = 100.0}).intensity,
               testing::ElementsAre(2.0F));
 }
@@ -97,11 +100,13 @@ TEST(Deskew, KeepsOnlyPointsWithinTheRange) {
 template <class T>
 std::vector<T> read_binary(const std::filesystem::path& path) {
   std::vector<T> values(std::filesystem::file_size(path) / sizeof(T));
-  std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(T)));
+  std::ifstream(path, std::ios::binary)
+      .read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(T)));
   return values;
 }
 
-/// Pose that takes raw points to deskewed ones, from those measured within 60 microseconds of `time`: one or two columns.
+/// Pose that takes raw points to deskewed ones, from those
+/// measured within 60 microseconds of `time`: one or two columns.
 SE3 pose_from_points(const LidarScan& scan, const std::vector<Vector3d>& expected, const SE3& T_I_L, Duration time) {
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < expected.size(); ++i)
@@ -116,9 +121,9 @@ SE3 pose_from_points(const LidarScan& scan, const std::vector<Vector3d>& expecte
 }
 
 TEST(Deskew, ReproducesAnotherProgramsResultOnRealScans) {
-  // gtsam_points deskewed these scans of the Newer College recording, into the IMU frame at the first point's time. With which motion is
-  // not recorded: poses every 5 ms are read off its result, and between them ours must agree. The extrinsics are read off the points
-  // at time zero, which only they move.
+  // gtsam_points deskewed these scans of the Newer College recording, into the IMU frame at the first point's time.
+  // With which motion is not recorded: poses every 5 ms are read off its result, and between them ours must agree. The
+  // extrinsics are read off the points at time zero, which only they move.
   const SE3 T_I_L = pose_from(exp_so3({0.0, 0.0, M_PI}), {-0.006, 0.012, -0.029});
   for (const std::string name : {"00", "01", "02"}) {
     PLLIT_RECORDING(raw_path, "deskew_newer_college/raw_" + name + ".bin");
@@ -139,7 +144,8 @@ TEST(Deskew, ReproducesAnotherProgramsResultOnRealScans) {
     for (int k = 0; k <= 20; ++k) {
       const Duration time = k * (scan.end() - scan.start) / 20;
       const SE3 pose = pose_from_points(scan, expected, T_I_L, time);
-      path.nodes.push_back({scan.start + time, rotation_from(pose.quat()), pose.translation(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
+      path.nodes.push_back({scan.start + time, rotation_from(pose.quat()), pose.translation(), Vector3d::Zero(),
+                            Vector3d::Zero(), Vector3d::Zero()});
     }
     for (int k = 0; k < 20; ++k) {
       const double dt = to_seconds(path.nodes[k + 1].time - path.nodes[k].time);

@@ -35,7 +35,8 @@ TEST(Downsample, KeepsPointsApartAndLeavesNoGapThatAPointCouldFill) {
 }
 
 TEST(Downsample, DoesNotTurnWallsInTheScannersSense) {
-  // A square room seen by one ring, in the order of the azimuth: the torque of what the noise does to the kept points, against its sigma.
+  // A square room seen by one ring, in the order of the azimuth: the torque of what the noise does to the kept points,
+  // against its sigma.
   constexpr double half_m = 3.0, range_sigma_m = 0.01;
   double sum = 0.0, squares = 0.0;
   test::Random random(5);
@@ -65,7 +66,9 @@ TEST(Downsample, DoesNotMoveAWallThatLiesNearAVoxelBorder) {
   for (const double height_m : {0.0, 0.003, 0.006, 0.01}) {
     PointCloud cloud;
     for (int i = 0; i < 200000; ++i) {
-      cloud.points_I.push_back(Vector3d(random.uniform(-10.0, 10.0), random.uniform(-10.0, 10.0), height_m + random.normal(0.01)).cast<float>());
+      cloud.points_I.push_back(
+          Vector3d(random.uniform(-10.0, 10.0), random.uniform(-10.0, 10.0), height_m + random.normal(0.01))
+              .cast<float>());
       cloud.intensity.push_back(0.0F);
     }
     const PointCloud kept = downsample(cloud, 0.2);

@@ -11,8 +11,10 @@ namespace {
 
 using test::Random;
 
-/// Points on the plane through `centre` with the given rotation (its z axis is the normal), with noise along the normal.
-PointCloud plane_points(Random& random, const Vector3d& centre, const SO3& rotation, double half_m, double noise_m, int count) {
+/// Points on the plane through `centre` with the given rotation
+/// (its z axis is the normal), with noise along the normal.
+PointCloud plane_points(Random& random, const Vector3d& centre, const SO3& rotation, double half_m, double noise_m,
+                        int count) {
   PointCloud cloud;
   for (int i = 0; i < count; ++i) {
     const Vector3d p(random.uniform(-half_m, half_m), random.uniform(-half_m, half_m), random.normal(noise_m));
@@ -48,11 +50,13 @@ TEST(PlaneMap, EqualsAFitToAllPointsOfItsWindow) {
   for (int i = 0; i < 3; ++i) low[i] = 0.5 * std::floor(query[i] / 0.5 - 0.5);
   std::vector<Vector3d> inside;
   for (const Vector3f& p : cloud.points_I)
-    if ((p.cast<double>().array() >= low).all() && (p.cast<double>().array() < low + 1.0).all()) inside.push_back(p.cast<double>());
+    if ((p.cast<double>().array() >= low).all() && (p.cast<double>().array() < low + 1.0).all())
+      inside.push_back(p.cast<double>());
   Vector3d mean = Vector3d::Zero();
   for (const Vector3d& p : inside) mean += p / static_cast<double>(inside.size());
   Matrix3d covariance = Matrix3d::Zero();
-  for (const Vector3d& p : inside) covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(inside.size());
+  for (const Vector3d& p : inside)
+    covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(inside.size());
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(covariance);
 
   const auto plane = map.plane_at(query);

@@ -19,7 +19,8 @@ std::vector<Vector3d> box_points(Random& random, int count) {
   std::vector<Vector3d> points;
   const Vector3d half(4.0, 3.0, 2.0);
   for (int i = 0; i < count; ++i) {
-    Vector3d p(random.uniform(-half.x(), half.x()), random.uniform(-half.y(), half.y()), random.uniform(-half.z(), half.z()));
+    Vector3d p(random.uniform(-half.x(), half.x()), random.uniform(-half.y(), half.y()),
+               random.uniform(-half.z(), half.z()));
     p[i % 3] = (i / 3 % 2 ? 1.0 : -1.0) * half[i % 3];
     points.push_back(p);
   }
@@ -37,13 +38,15 @@ Scene box_scene(unsigned seed, double noise_m = 0.01) {
   Random random(seed);
   Scene scene;
   PointCloud map_points;
-  for (const Vector3d& p : box_points(random, 60000)) map_points.points_I.push_back((p + random.vector(noise_m)).cast<float>());
+  for (const Vector3d& p : box_points(random, 60000))
+    map_points.points_I.push_back((p + random.vector(noise_m)).cast<float>());
   map_points.intensity.assign(map_points.points_I.size(), 0.0F);
   scene.map.insert(map_points, SE3::Identity());
   scene.state = random.state();
   scene.state.p_W = random.vector(0.5);
   const SE3 T_I_W = scene.state.T_W_I().inverse();
-  for (const Vector3d& p : box_points(random, 1500)) scene.scan.points_I.push_back(T_I_W.act(p + random.vector(noise_m)).cast<float>());
+  for (const Vector3d& p : box_points(random, 1500))
+    scene.scan.points_I.push_back(T_I_W.act(p + random.vector(noise_m)).cast<float>());
   scene.scan.intensity.assign(scene.scan.points_I.size(), 0.0F);
   return scene;
 }
@@ -55,11 +58,13 @@ TEST(PlaneResiduals, GradientMatchesCentralDifferencesOfTheCost) {
   PlaneResiduals residuals(scene.scan, scene.map, scene.rig, Matrix6::Identity(), config, arena);
   const PlaneEquations at = residuals(scene.state);
   ASSERT_GT(at.sums.inliers, 1000);
-  // The planes that are found stay the same for steps that are small against a voxel but for few points, hence the tolerance.
+  // The planes that are found stay the same for steps that are
+  // small against a voxel but for few points, hence the tolerance.
   for (int i = 0; i < 6; ++i) {
     Vector18 d = Vector18::Zero();
     d[i] = 1e-5;
-    const double slope = (residuals(boxplus(scene.state, d)).sums.cost - residuals(boxplus(scene.state, -d)).sums.cost) / 2e-5;
+    const double slope =
+        (residuals(boxplus(scene.state, d)).sums.cost - residuals(boxplus(scene.state, -d)).sums.cost) / 2e-5;
     EXPECT_NEAR(slope, -2.0 * at.sums.b[i], 0.05 * at.sums.b.head<6>().norm() + 5.0) << "axis " << i;
   }
 }
@@ -75,7 +80,8 @@ TEST(PlaneResiduals, BringABadPoseBackToTheTruth) {
     Estimate prior{.mean = boxplus(scene.state, offset), .covariance = 1e-6 * Matrix18::Identity()};
     prior.covariance.topLeftCorner<6, 6>() = 0.04 * Matrix6::Identity();
     PlaneResiduals residuals(scene.scan, scene.map, scene.rig, prior.covariance.topLeftCorner<6, 6>(), {}, arena);
-    const auto result = iterated_update(prior, [&](const NavState& x) { return residuals(x).sums; }, {.max_iterations = 15});
+    const auto result =
+        iterated_update(prior, [&](const NavState& x) { return residuals(x).sums; }, {.max_iterations = 15});
     const Vector18 error = boxminus(result.posterior.mean, scene.state);
     EXPECT_LT(error.head<3>().norm(), 0.002);
     EXPECT_LT(error.segment<3>(ix::p).norm(), 0.005);

@@ -55,11 +55,13 @@ TEST(SimulationText, SetsEveryKey) {
 
 TEST(SimulationText, ListsTheScenesWhereOneIsUnknown) {
   for (const auto* source : {"sim:rom", "sim:", "sim:?seed=1", "sim:Room"})
-    EXPECT_THAT(error_of(source), AllOf(HasSubstr(source), HasSubstr("did you mean"), HasSubstr("room, corridor, stairs, plant, street, field")));
+    EXPECT_THAT(error_of(source), AllOf(HasSubstr(source), HasSubstr("did you mean"),
+                                        HasSubstr("room, corridor, stairs, plant, street, field")));
 }
 
 TEST(SimulationText, ListsTheKeysWhereOneIsUnknownOrRepeated) {
-  EXPECT_THAT(error_of("sim:box_room?sede=3"), AllOf(HasSubstr("\"sede\""), HasSubstr("did you mean seed"), HasSubstr("seed, duration, ideal, motion, lidar")));
+  EXPECT_THAT(error_of("sim:box_room?sede=3"), AllOf(HasSubstr("\"sede\""), HasSubstr("did you mean seed"),
+                                                     HasSubstr("seed, duration, ideal, motion, lidar")));
   EXPECT_THAT(error_of("sim:box_room?seed=3&seed=4"), AllOf(HasSubstr("\"seed\""), HasSubstr("twice")));
 }
 
@@ -79,8 +81,10 @@ TEST(SimulationText, SaysWhatAWrongValueShouldBe) {
 
 TEST(SimulationText, SetsTheKeysOfWorlds) {
   const auto config = parse_sim_config(
-      "sim:plant?rig=inspection&motion=walk.tum&speedup=1.4&way=mirrored&length=80&imu=bmi088&image_rate=25&images=both&light=night"
-      "&people=3&finding=pipe&arrival=brought&finding_at=20&finding_K=12&lost_share=0.1&clock_drift=20&late_by=0.2&image_gap=1:2");
+      "sim:plant?rig=inspection&motion=walk.tum&speedup=1.4&way=mirrored&length=80&imu=bmi088&image_rate=25&images="
+      "both&light=night"
+      "&people=3&finding=pipe&arrival=brought&finding_at=20&finding_K=12&lost_share=0.1&clock_drift=20&late_by=0.2&"
+      "image_gap=1:2");
   ASSERT_TRUE(config) << config.error().message;
   EXPECT_EQ(config->rig, SimConfig::RigName::inspection);
   EXPECT_EQ(config->motion, "walk.tum");

@@ -49,7 +49,8 @@ TEST(Consistency, WithAKnownMapTheNeesOfThePoseIsChiSquared) {
           const MotionState truth = simulation->motion().at(begin);
           Vector18 sigma;
           sigma << Vector3d::Constant(0.01), Vector3d::Constant(0.02), Vector3d::Constant(0.02),
-              Vector3d::Constant(rig.imu.gyro_bias_sigma), Vector3d::Constant(rig.imu.accel_bias_sigma), Vector3d::Constant(0.01);
+              Vector3d::Constant(rig.imu.gyro_bias_sigma), Vector3d::Constant(rig.imu.accel_bias_sigma),
+              Vector3d::Constant(0.01);
           NavState state;
           state.time = begin;
           const SO3 R_W_I = truth.T_W_I.asSO3();
@@ -63,9 +64,12 @@ TEST(Consistency, WithAKnownMapTheNeesOfThePoseIsChiSquared) {
         }
         const Propagation motion = propagate(*estimate, packet->imu, packet->end, rig.imu, {}, packet->scan->start);
         const PointCloud cloud = downsample(deskew(*packet->scan, motion.path, rig.T_I_L, rig.lidar), 0.4);
-        PlaneResiduals residuals(cloud, map, rig, motion.sweep.estimate.covariance.topLeftCorner<6, 6>(), every_point, arena);
-        const auto update = iterated_update(motion.sweep.estimate, [&](const NavState& x) { return residuals(x).sums; }, {});
-        ASSERT_GT(update.last.inliers, 100) << update.last.candidates << " of " << cloud.points_I.size() << " at " << to_seconds(packet->end.time_since_epoch());
+        PlaneResiduals residuals(cloud, map, rig, motion.sweep.estimate.covariance.topLeftCorner<6, 6>(), every_point,
+                                 arena);
+        const auto update =
+            iterated_update(motion.sweep.estimate, [&](const NavState& x) { return residuals(x).sums; }, {});
+        ASSERT_GT(update.last.inliers, 100) << update.last.candidates << " of " << cloud.points_I.size() << " at "
+                                            << to_seconds(packet->end.time_since_epoch());
         estimate = at_end(motion.sweep, motion.predicted, update.posterior);
       }
     }
@@ -88,11 +92,13 @@ TEST(Consistency, WithItsOwnMapRelativePosesOverTenMetresAreAsGoodAsClaimed) {
     Vector6 squares = Vector6::Zero(), claimed = Vector6::Zero();
     int count = 0;
     for (int seed = 501; seed <= 512; ++seed) {
-      const auto run = test::run_simulation("sim:box_" + scene + "?duration=30&lidar=ring16&seed=" + std::to_string(seed));
+      const auto run =
+          test::run_simulation("sim:box_" + scene + "?duration=30&lidar=ring16&seed=" + std::to_string(seed));
       ASSERT_TRUE(run.result) << run.result.error().message;
       std::vector<double> distance_m{0.0};
       for (std::size_t i = 1; i < run.frames.size(); ++i)
-        distance_m.push_back(distance_m.back() + (run.frames[i].posterior.mean.p_W - run.frames[i - 1].posterior.mean.p_W).norm());
+        distance_m.push_back(distance_m.back() +
+                             (run.frames[i].posterior.mean.p_W - run.frames[i - 1].posterior.mean.p_W).norm());
       for (std::size_t a = 0, b = 0; a < run.frames.size(); a += 10) {
         while (b < run.frames.size() && distance_m[b] < distance_m[a] + 10.0) ++b;
         if (b == run.frames.size()) break;
@@ -130,8 +136,9 @@ TEST(Consistency, AlongAnEndlessCorridorTheSigmaGrowsAndCoversTheError) {
       if (t > 7.0 && sigma_early == 0.0) sigma_early = sigma;
       sigma_late = sigma;
     }
-    RecordProperty("corridor_" + std::to_string(seed), std::to_string(test::relative_error_W(run, first, run.frames.back())[ix::p]) +
-                                                           " m at sigma " + std::to_string(sigma_late) + " m");
+    RecordProperty("corridor_" + std::to_string(seed),
+                   std::to_string(test::relative_error_W(run, first, run.frames.back())[ix::p]) + " m at sigma " +
+                       std::to_string(sigma_late) + " m");
     EXPECT_GT(sigma_late, 2.0 * sigma_early) << "seed " << seed;
     EXPECT_GT(run.summary.count(HealthState::degraded), static_cast<int>(run.frames.size()) / 2);
     EXPECT_EQ(run.summary.count(HealthState::lost), 0);

@@ -30,13 +30,24 @@ TEST(Health, SaysWhyAFrameIsDegraded) {
     EXPECT_EQ(health.state, HealthState::degraded);
     return health.reasons.empty() ? "" : health.reasons.front();
   };
-  EXPECT_THAT(reason([](FrameFacts& f) { f.localizability.degenerate = 1; f.localizability.worst[3] = 1.0; }),
+  EXPECT_THAT(reason([](FrameFacts& f) {
+                f.localizability.degenerate = 1;
+                f.localizability.worst[3] = 1.0;
+              }),
               testing::HasSubstr("does not observe translation along (1.00, 0.00, 0.00)"));
   EXPECT_THAT(reason([](FrameFacts& f) { f.inliers = 400; }), testing::HasSubstr("33 %"));
   EXPECT_THAT(reason([](FrameFacts& f) { f.residual_rms_m = 0.4; }), testing::HasSubstr("0.40 m"));
   EXPECT_THAT(reason([](FrameFacts& f) { f.longest_imu_gap_s = 0.7; }), testing::HasSubstr("no IMU data for 0.70 s"));
-  EXPECT_THAT(reason([](FrameFacts& f) { f.matched = false; f.inliers = 10; }), testing::HasSubstr("not matched"));
-  EXPECT_THAT(reason([](FrameFacts& f) { f.has_scan = f.matched = false; f.since_match_s = 1.5; }), testing::HasSubstr("LiDAR silent for 1.5 s"));
+  EXPECT_THAT(reason([](FrameFacts& f) {
+                f.matched = false;
+                f.inliers = 10;
+              }),
+              testing::HasSubstr("not matched"));
+  EXPECT_THAT(reason([](FrameFacts& f) {
+                f.has_scan = f.matched = false;
+                f.since_match_s = 1.5;
+              }),
+              testing::HasSubstr("LiDAR silent for 1.5 s"));
 }
 
 TEST(Health, IsLostAfterALongSilenceAnImpossibleSpeedOrANewMap) {

@@ -45,7 +45,8 @@ TEST(Odometry, SurvivesFastTurns) {
 
 TEST(Odometry, WorksWithAnImuOfTenToAThousandHertz) {
   for (const int rate_hz : {20, 100, 1000}) {
-    const auto run = test::run_simulation("sim:box_room?duration=15&lidar=ring16&seed=5&imu_rate=" + std::to_string(rate_hz));
+    const auto run =
+        test::run_simulation("sim:box_room?duration=15&lidar=ring16&seed=5&imu_rate=" + std::to_string(rate_hz));
     ASSERT_TRUE(run.result) << run.result.error().message;
     EXPECT_LT(errors_of(run).rms_m, 0.02) << rate_hz << " Hz";
   }
@@ -84,7 +85,8 @@ TEST(Odometry, RefusesARecordingThatIsTooShortToStart) {
   config.start.window_s = 30.0;
   const Rig rig = simulation->rig();
   RunSummary summary;
-  const auto result = run_odometry(*simulation, rig, config, {.sink = [](const FrameEstimate&) -> Expected<void> { return {}; }}, summary);
+  const auto result = run_odometry(*simulation, rig, config,
+                                   {.sink = [](const FrameEstimate&) -> Expected<void> { return {}; }}, summary);
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().kind, Error::Kind::input);
   EXPECT_THAT(result.error().message, testing::HasSubstr("before the odometry could start"));

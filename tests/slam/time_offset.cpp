@@ -28,7 +28,8 @@ Recorded recorded(const std::string& address, Duration lidar_late_by) {
 
 TEST(TimeOffset, IsFoundToThreeMilliseconds) {
   for (const int offset_ms : {-120, 0, 37, 210}) {
-    const Recorded data = recorded("sim:box_room?duration=20&lidar=ring16&seed=3", std::chrono::milliseconds(-offset_ms));
+    const Recorded data =
+        recorded("sim:box_room?duration=20&lidar=ring16&seed=3", std::chrono::milliseconds(-offset_ms));
     const TimeOffset offset = estimate_time_offset(data.imu, lidar_rotations(data.scans, data.rig, {}));
     ASSERT_TRUE(offset.found) << offset.reason;
     EXPECT_NEAR(offset.offset_s, offset_ms * 1e-3, 0.003);
@@ -37,7 +38,8 @@ TEST(TimeOffset, IsFoundToThreeMilliseconds) {
 
 TEST(TimeOffset, IsNotClaimedWithoutTurns) {
   const Recorded data = recorded("sim:box_room?duration=3&lidar=ring16", Duration{0});
-  const TimeOffset offset = estimate_time_offset(data.imu, lidar_rotations(std::span(data.scans).first(20), data.rig, {}));
+  const TimeOffset offset =
+      estimate_time_offset(data.imu, lidar_rotations(std::span(data.scans).first(20), data.rig, {}));
   EXPECT_FALSE(offset.found);
   EXPECT_FALSE(offset.reason.empty());
 }

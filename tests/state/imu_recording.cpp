@@ -42,8 +42,8 @@ TEST(DeadReckoning, KeepsToTheReferenceForASecondOnARealImu) {
   const auto truth = test::read_trajectory_text(truth_path);
   const ImuNoise noise{.gyro_density = 0.002, .accel_density = 0.02};
 
-  // A filter with the reference as its pose sensor learns velocity, biases and gravity; from each of its states, dead reckoning
-  // for one second with the IMU alone.
+  // A filter with the reference as its pose sensor learns velocity, biases and gravity; from each of its states, dead
+  // reckoning for one second with the IMU alone.
   const auto start = start_up(std::span(imu).first(110), noise, {});
   ASSERT_TRUE(start && *start);
   Estimate estimate = (*start)->estimate;

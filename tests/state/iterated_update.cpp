@@ -116,8 +116,8 @@ TEST(IteratedUpdate, CarriesAnUnobservedDirectionByThePrior) {
 }
 
 TEST(IteratedUpdate, GivesNoGainToADirectionThatTheSensorCallsUnobserved) {
-  // A sensor of z whose normal is off by 0.005: with a metre of doubt about x and a millimetre about z, the full gain would move x by
-  // decimetres to explain a millimetre of noise.
+  // A sensor of z whose normal is off by 0.005: with a metre of doubt about x and a millimetre about z, the full gain
+  // would move x by decimetres to explain a millimetre of noise.
   Estimate prior;
   prior.covariance = 1e-6 * Matrix18::Identity();
   prior.covariance(ix::p, ix::p) = 1.0;

@@ -52,7 +52,8 @@ TEST(ImuStep, JacobianToTheNoiseMatchesCentralDifferences) {
 TEST(Propagate, FallsFreelyAsPhysicsSays) {
   Estimate start;
   start.mean.v_W = Vector3d(1.0, 0.0, 5.0);
-  const auto result = propagate(start, constant_imu(Vector3d::Zero(), Vector3d::Zero(), 200.0, 1.0), Time(1s), ImuNoise{});
+  const auto result =
+      propagate(start, constant_imu(Vector3d::Zero(), Vector3d::Zero(), 200.0, 1.0), Time(1s), ImuNoise{});
   EXPECT_LT((result.predicted.mean.p_W - Vector3d(1.0, 0.0, 5.0 - 0.5 * 9.81)).norm(), 1e-9);
   EXPECT_LT((result.predicted.mean.v_W - Vector3d(1.0, 0.0, 5.0 - 9.81)).norm(), 1e-9);
 }
@@ -78,7 +79,8 @@ TEST(Propagate, ClaimsTheSameUncertaintyAtAnySampleRate) {
     const auto imu = constant_imu({0.0, 0.0, 0.3}, {0.2, 0.0, 9.81}, rate_hz, 1.0);
     const Matrix18 P = propagate(start, imu, Time(1s), noise, {.max_gap = 1s}).predicted.covariance;
     if (rate_hz == 1000.0) reference = P;
-    for (int i = 0; i < 15; ++i) EXPECT_NEAR(P(i, i) / reference(i, i), 1.0, 0.3) << "axis " << i << " at " << rate_hz << " Hz";
+    for (int i = 0; i < 15; ++i)
+      EXPECT_NEAR(P(i, i) / reference(i, i), 1.0, 0.3) << "axis " << i << " at " << rate_hz << " Hz";
     EXPECT_NEAR(P(ix::theta, ix::theta), noise.gyro_density * noise.gyro_density + 1e-6 / 3.0, 2e-6);
   }
 }
@@ -110,7 +112,8 @@ TEST(Propagate, CovarianceMatchesTheSpreadOfNoisyRuns) {
 }
 
 TEST(Sweep, CovariancesMatchTheSpreadOfNoisyRuns) {
-  // Twin: the mean over the sweep of where each instant's pose error would put the end, and the error of the end itself.
+  // Twin: the mean over the sweep of where each instant's pose
+  // error would put the end, and the error of the end itself.
   Random random(6);
   const double rate_hz = 100.0;
   ImuNoise noise;
@@ -146,8 +149,9 @@ TEST(Sweep, CovariancesMatchTheSpreadOfNoisyRuns) {
     spread += both * both.transpose() / runs;
   }
   Eigen::Matrix<double, 12, 12> claimed;
-  claimed << predicted.sweep.estimate.covariance.topLeftCorner<6, 6>(), predicted.sweep.with_end.topLeftCorner<6, 6>().transpose(),
-      predicted.sweep.with_end.topLeftCorner<6, 6>(), predicted.predicted.covariance.topLeftCorner<6, 6>();
+  claimed << predicted.sweep.estimate.covariance.topLeftCorner<6, 6>(),
+      predicted.sweep.with_end.topLeftCorner<6, 6>().transpose(), predicted.sweep.with_end.topLeftCorner<6, 6>(),
+      predicted.predicted.covariance.topLeftCorner<6, 6>();
   for (int i = 0; i < 12; ++i)
     for (int j = 0; j < 12; ++j)
       EXPECT_NEAR(spread(i, j), claimed(i, j), 0.1 * std::sqrt(claimed(i, i) * claimed(j, j))) << i << ", " << j;
@@ -161,7 +165,8 @@ TEST(Sweep, OfAnInstantLeavesTheUpdateAsItIs) {
   start.covariance = 0.01 * Matrix18::Identity();
   const auto imu = constant_imu({0.3, -0.2, 0.5}, {1.0, 0.5, 9.0}, 100.0, 0.1);
   const Propagation motion = propagate(start, imu, Time(100ms), ImuNoise{});
-  Estimate posterior{.mean = boxplus(motion.predicted.mean, Vector18::Constant(0.01)), .covariance = 0.5 * motion.predicted.covariance};
+  Estimate posterior{.mean = boxplus(motion.predicted.mean, Vector18::Constant(0.01)),
+                     .covariance = 0.5 * motion.predicted.covariance};
   const Estimate end = at_end(motion.sweep, motion.predicted, posterior);
   EXPECT_LT(boxminus(end.mean, posterior.mean).norm(), 1e-9);
   EXPECT_LT((end.covariance - posterior.covariance).norm(), 1e-9);

@@ -4,9 +4,9 @@
 
 #include <Eigen/Dense>
 
-#include "support/recordings.hpp"
 #include "support/imu_recording.hpp"
 #include "support/random_states.hpp"
+#include "support/recordings.hpp"
 
 namespace pllit {
 namespace {
@@ -134,7 +134,9 @@ TEST(StartUp, ClaimsTheErrorsThatItMakes) {
     rest.accel_bias = random.vector(noise.accel_bias_sigma);
     rest.gyro_noise = noise.gyro_density * std::sqrt(200.0);
     rest.accel_noise = noise.accel_density * std::sqrt(200.0);
-    const StartUpConfig lenient{.still_gyro_spread_rps = 0.1, .still_accel_spread_mps2 = 1.0, .still_slow_spread_rps = 0.1,
+    const StartUpConfig lenient{.still_gyro_spread_rps = 0.1,
+                                .still_accel_spread_mps2 = 1.0,
+                                .still_slow_spread_rps = 0.1,
                                 .still_rate_rps = 0.05};  // this test's noise is large
     const auto start = start_up(at_rest(random, rest), noise, lenient);
     ASSERT_TRUE(start && *start && (*start)->still);

@@ -20,7 +20,7 @@ inline std::optional<std::filesystem::path> recording(std::string_view relative)
 }  // namespace pllit::test
 
 /// Skips the running test, naming the recording it misses; otherwise declares `variable` with its path.
-#define PLLIT_RECORDING(variable, relative)                                                   \
-  const auto variable##_found = pllit::test::recording(relative);                             \
+#define PLLIT_RECORDING(variable, relative)                                                    \
+  const auto variable##_found = pllit::test::recording(relative);                              \
   if (!variable##_found) GTEST_SKIP() << "recording absent: " << relative << " ($PLLIT_DATA)"; \
   const std::filesystem::path variable = *variable##_found

@@ -41,7 +41,8 @@ inline Vector6 relative_error_W(const SimulatedRun& run, const FrameEstimate& a,
   const SE3 truth = run.truth_at(a).inverse() * run.truth_at(b);
   const Matrix3d R_W_a = a.posterior.mean.R_W_I.rotation();
   Vector6 error;
-  error << R_W_a * log_so3(estimated.asSO3() * truth.asSO3().inverse()), R_W_a * (estimated.translation() - truth.translation());
+  error << R_W_a * log_so3(estimated.asSO3() * truth.asSO3().inverse()),
+      R_W_a * (estimated.translation() - truth.translation());
   return error;
 }
 

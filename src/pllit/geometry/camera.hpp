@@ -15,8 +15,8 @@ struct Camera {
   Distortion distortion = Distortion::radtan;
   std::array<double, 5> k{};  ///< radtan: k1 k2 p1 p2 k3; equidistant: k1 k2 k3 k4 (the fifth unused)
 
-  /// Pixel of a point in the camera frame (z forward), or nothing where the model has none: behind the camera, or beyond
-  /// the angle at which the distortion stops growing.
+  /// Pixel of a point in the camera frame (z forward), or nothing where the model has none: behind the camera, or
+  /// beyond the angle at which the distortion stops growing.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_C) const;
   /// Unit ray in the camera frame through a pixel; the inverse of project, by Newton iteration.
   Eigen::Vector3d ray(const Eigen::Vector2d& pixel_px) const;

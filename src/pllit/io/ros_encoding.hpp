@@ -39,8 +39,8 @@ struct PointCloud2Layout {
   TimeUnit time_unit = TimeUnit::seconds;  ///< of `time`; FAST-LIO2 and FAST-LIVO2 want microseconds
 };
 
-/// Fields x, y, z, intensity (float32), the time and ring (uint16, zeros where the scan has none); header stamp = start of the
-/// scan.
+/// Fields x, y, z, intensity (float32), the time and ring (uint16, zeros where the scan has none); header stamp = start
+/// of the scan.
 std::vector<std::byte> encode_point_cloud2(const LidarScan& scan, std::string_view frame_id,
                                            const PointCloud2Layout& layout = {});
 

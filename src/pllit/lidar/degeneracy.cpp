@@ -14,7 +14,8 @@ struct Information {
   double weight;
 
   double needed(const Vector6& direction, const DegeneracyConfig& config) const {
-    const double share = config.min_share * (direction.tail<3>().squaredNorm() + 0.1 * direction.head<3>().squaredNorm());
+    const double share =
+        config.min_share * (direction.tail<3>().squaredNorm() + 0.1 * direction.head<3>().squaredNorm());
     return std::max(config.min_over_noise * direction.dot(noise * direction), share * weight);
   }
   double along(const Vector6& direction) const { return direction.dot(H * direction); }
@@ -29,7 +30,8 @@ void add_direction(DegenerateDirections& directions, const Vector6& direction) {
   directions.col(directions.cols() - 1) = beyond.normalized();
 }
 
-/// Where planes say nothing of a shift, they say nothing of it at any attitude: what turning the eigenvector of a shift holds is noise.
+/// Where planes say nothing of a shift, they say nothing of it at any attitude: what turning the eigenvector of a shift
+/// holds is noise.
 Vector6 without_noise(Vector6 direction) {
   constexpr double mostly_shift = 0.9;
   if (direction.tail<3>().norm() > mostly_shift) direction.head<3>().setZero();
@@ -57,9 +59,11 @@ DegenerateDirections unobserved_directions(const Information& information,
   return directions;
 }
 
-/// The states that an unobserved shift along a direction of W carries with it: position, velocity, gravity and accelerometer bias are
-/// known along it only through each other. An unobserved turn leaves heading and gyroscope bias alone.
-Eigen::Matrix<double, error_index::size, Eigen::Dynamic> in_error_state(const DegenerateDirections& directions, const SO3& R_W_I) {
+/// The states that an unobserved shift along a direction of W carries with it:
+/// position, velocity, gravity and accelerometer bias are known along it only
+/// through each other. An unobserved turn leaves heading and gyroscope bias alone.
+Eigen::Matrix<double, error_index::size, Eigen::Dynamic> in_error_state(const DegenerateDirections& directions,
+                                                                        const SO3& R_W_I) {
   namespace ix = error_index;
   const Matrix3d to_I = R_W_I.rotation().transpose();
   Eigen::Matrix<double, ix::size, Eigen::Dynamic> states(ix::size, 0);
@@ -120,7 +124,8 @@ std::string describe_degeneracy(const Localizability& localizability) {
   const Vector6& direction = localizability.worst;
   const bool turning = direction.head<3>().norm() > direction.tail<3>().norm();
   const Vector3d axis = (turning ? direction.head<3>() : direction.tail<3>()).normalized();
-  return std::format("{} along ({:.2f}, {:.2f}, {:.2f})", turning ? "rotation" : "translation", axis.x(), axis.y(), axis.z());
+  return std::format("{} along ({:.2f}, {:.2f}, {:.2f})", turning ? "rotation" : "translation", axis.x(), axis.y(),
+                     axis.z());
 }
 
 }  // namespace pllit

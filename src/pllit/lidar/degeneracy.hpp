@@ -24,10 +24,11 @@ using DegenerateDirections = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// How well a scan holds each direction.
 struct Localizability {
-  /// Information along x, y, z (translation, then rotation, in W) as a share of the whole; 1/3 where planes face all ways.
+  /// Information along x, y, z (translation, then rotation, in
+  /// W) as a share of the whole; 1/3 where planes face all ways.
   Vector6 axis_share = Vector6::Zero();
-  double weakest_share = 0.0;  ///< of the weakest direction, whichever way it points
-  int degenerate = 0;          ///< number of directions that are not observed, 0 to 6
+  double weakest_share = 0.0;       ///< of the weakest direction, whichever way it points
+  int degenerate = 0;               ///< number of directions that are not observed, 0 to 6
   Vector6 worst = Vector6::Zero();  ///< the first of them
 };
 
@@ -37,10 +38,11 @@ struct ObservedEquations {
   DegenerateDirections unobserved = DegenerateDirections(6, 0);
 };
 
-/// Takes the unobserved directions out of the normal equations of a scan linearised at attitude `R_W_I`: there the posterior equals the
-/// prior. Directions are eigenvectors of the 6 x 6 pose block with the rotation scaled by the scan's mean lever arm, so that all are in
-/// metres. The directions `held`, those of the scan before, stay the same until they are clearly observed: noise in the normals moves
-/// the weakest direction from scan to scan, and were it followed, the scans together would seem to observe it.
+/// Takes the unobserved directions out of the normal equations of a scan linearised at attitude `R_W_I`: there the
+/// posterior equals the prior. Directions are eigenvectors of the 6 x 6 pose block with the rotation scaled by the
+/// scan's mean lever arm, so that all are in metres. The directions `held`, those of the scan before, stay the same
+/// until they are clearly observed: noise in the normals moves the weakest direction from scan to scan, and were it
+/// followed, the scans together would seem to observe it.
 ObservedEquations observed_part(const PlaneEquations& equations, const SO3& R_W_I, const DegenerateDirections& held,
                                 const DegeneracyConfig& config);
 

@@ -9,9 +9,9 @@ namespace {
 struct LocalMotion {
   Time time;
   Matrix3d R_end_I;
-  Vector3d p_end;      ///< m
-  Vector3d v_end;      ///< m/s
-  Vector3d omega_I;    ///< rad/s
+  Vector3d p_end;    ///< m
+  Vector3d v_end;    ///< m/s
+  Vector3d omega_I;  ///< rad/s
 };
 
 LocalMotion motion_at(const MotionPath& path, const SE3& T_end_W, Time time) {

@@ -16,8 +16,8 @@ struct PointCloud {
   std::vector<float> intensity;
 };
 
-/// The scan's points between the LiDAR's minimum and maximum range, moved to where they would have been measured at the path's
-/// end. Points earlier than the path continue its first motion backwards.
+/// The scan's points between the LiDAR's minimum and maximum range, moved to where they would have been measured at the
+/// path's end. Points earlier than the path continue its first motion backwards.
 PointCloud deskew(const LidarScan& scan, const MotionPath& path, const SE3& T_I_L, const LidarModel& lidar);
 
 }  // namespace pllit

@@ -19,7 +19,8 @@ struct Kept {
   }
 };
 
-/// Each number below 2^bits once, in an order without a direction: odd multiplications and shifts can be undone, so none is lost.
+/// Each number below 2^bits once, in an order without a direction: odd multiplications and shifts can be undone, so
+/// none is lost.
 std::size_t scattered(std::size_t i, int bits) {
   const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
   const int half = (bits + 1) / 2;

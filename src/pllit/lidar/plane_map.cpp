@@ -43,8 +43,7 @@ Matrix3d PlanePatch::normal_covariance() const {
 }
 
 PlaneMap::PlaneMap(const PlaneMapConfig& config)
-    : config_(config),
-      levels_{Level{config.voxel_m, {}}, Level{config.voxel_m * config.coarse_factor, {}}} {}
+    : config_(config), levels_{Level{config.voxel_m, {}}, Level{config.voxel_m * config.coarse_factor, {}}} {}
 
 void PlaneMap::insert(const PointCloud& cloud, const SE3& T_W_I) {
   const Matrix3d R = T_W_I.rotation();

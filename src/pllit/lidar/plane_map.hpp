@@ -1,5 +1,5 @@
-// The map that scans are matched to: sums of points in hashed voxels, from which planes with covariance are fitted where
-// they are asked for.
+// The map that scans are matched to: sums of points in hashed voxels, from which planes with covariance are fitted
+// where they are asked for.
 #pragma once
 
 #include <array>
@@ -12,21 +12,21 @@
 namespace pllit {
 
 struct PlaneMapConfig {
-  double voxel_m = 0.4;        ///< a plane is fitted to the points of 2 x 2 x 2 voxels
-  double coarse_factor = 3.0;  ///< a second, coarser grid serves where the fine one has too few points
-  double radius_m = 100.0;     ///< what is farther from the robot than this (in any axis) is dropped
-  double memory_mb = 512.0;    ///< above this the radius shrinks
-  int min_points = 8;          ///< fewer points make no plane
-  int max_points = 100;        ///< a voxel with this many points is complete
-  double max_thickness = 0.12; ///< standard deviation across a plane, as a share of the voxel
-  double max_flatness = 0.15;  ///< variance across a plane, as a share of the smaller one along it
+  double voxel_m = 0.4;         ///< a plane is fitted to the points of 2 x 2 x 2 voxels
+  double coarse_factor = 3.0;   ///< a second, coarser grid serves where the fine one has too few points
+  double radius_m = 100.0;      ///< what is farther from the robot than this (in any axis) is dropped
+  double memory_mb = 512.0;     ///< above this the radius shrinks
+  int min_points = 8;           ///< fewer points make no plane
+  int max_points = 100;         ///< a voxel with this many points is complete
+  double max_thickness = 0.12;  ///< standard deviation across a plane, as a share of the voxel
+  double max_flatness = 0.15;   ///< variance across a plane, as a share of the smaller one along it
 };
 
 /// A plane fitted to points: variances along its axes tell how well it is known.
 struct PlanePatch {
   Vector3d centroid_W;
-  Matrix3d axes_W;            ///< columns: normal, then the two directions in the plane
-  Vector3d variances_m2;      ///< of the points along the axes, ascending
+  Matrix3d axes_W;        ///< columns: normal, then the two directions in the plane
+  Vector3d variances_m2;  ///< of the points along the axes, ascending
   double points = 0.0;
   double voxel_m = 0.0;  ///< of the grid that it comes from
 

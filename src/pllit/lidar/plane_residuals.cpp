@@ -89,8 +89,8 @@ void PlaneResiduals::add_point(std::size_t i, const NavState& state, PlaneEquati
 
   // The plane's own scatter stands in for the point's noise where the surface is rougher than the sensor.
   const double share = std::max(1.0, plane.points / config_.plane_points);
-  const double point = std::max(point_variance_m2(R * (p_I - rig_.T_I_L.translation()), normal_W, rig_.lidar),
-                                plane.variances_m2[0]);
+  const double point =
+      std::max(point_variance_m2(R * (p_I - rig_.T_I_L.translation()), normal_W, rig_.lidar), plane.variances_m2[0]);
   const double variance = point + share * plane.height_variance_m2(p_W);
   const double gate_m = config_.gate * std::sqrt(variance + J.dot(search_covariance_ * J));
   if (std::abs(r) > std::min(gate_m, config_.max_distance * plane.voxel_m)) return;

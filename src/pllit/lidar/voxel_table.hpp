@@ -1,5 +1,5 @@
-// A hash table from voxels to cells: open addressing in two flat arrays, so that a look-up is one or two cache lines and a
-// walk over all cells has a fixed order.
+// A hash table from voxels to cells: open addressing in two flat arrays, so that a look-up is one or two cache lines
+// and a walk over all cells has a fixed order.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@
 
 namespace pllit {
 
-/// Integer voxel coordinates packed into 64 bits, 21 bits an axis (a million voxels to each side of the origin); coordinates
-/// beyond wrap around, which a map that slides with the robot never notices.
+/// Integer voxel coordinates packed into 64 bits, 21 bits an axis (a million voxels to each side of the origin);
+/// coordinates beyond wrap around, which a map that slides with the robot never notices.
 using VoxelKey = std::uint64_t;
 
 inline VoxelKey voxel_key(const Eigen::Vector3i& voxel) {

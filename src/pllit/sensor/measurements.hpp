@@ -14,8 +14,8 @@
 
 namespace pllit {
 
-/// Angular rate and specific force in I, biased; at rest the accelerometer shows +g upwards. The accelerometer's unit is
-/// as recorded (m/s2 or g) until start-up has decided it.
+/// Angular rate and specific force in I, biased; at rest the accelerometer shows +g upwards. The accelerometer's unit
+/// is as recorded (m/s2 or g) until start-up has decided it.
 struct ImuSample {
   Time time;
   Eigen::Vector3d gyro_rps = Eigen::Vector3d::Zero();

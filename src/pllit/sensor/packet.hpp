@@ -10,8 +10,8 @@
 
 namespace pllit {
 
-/// IMU samples from the last one before the previous packet's end to the first one after this end, and the scan that ends
-/// the packet. A packet without a scan bridges a silent LiDAR.
+/// IMU samples from the last one before the previous packet's end to the first one after this end, and the scan that
+/// ends the packet. A packet without a scan bridges a silent LiDAR.
 struct SensorPacket {
   Time end;
   std::vector<ImuSample> imu;

@@ -5,8 +5,8 @@
 namespace pllit {
 namespace {
 
-/// The noise densities, 0.014 deg/s/sqrt(Hz) and 190 ug/sqrt(Hz), are of the order that makers of small MEMS IMUs state; the walks and
-/// ranges are assumed.
+/// The noise densities, 0.014 deg/s/sqrt(Hz) and 190 ug/sqrt(Hz), are of the order that makers of small MEMS IMUs
+/// state; the walks and ranges are assumed.
 Rig handheld_rig() {
   Rig rig;
   rig.T_I_L = pose_from(exp_so3({0.01, -0.02, 0.5}), {0.04, -0.02, 0.11});

@@ -44,7 +44,8 @@ Key number_key(std::string_view name, For scenes, Object access, double low, dou
 }
 
 Key count_key(std::string_view name, int SimConfig::* member, int high) {
-  return {{name, std::format("a whole number from 0 to {}", high), For::worlds}, [=](SimConfig& config, std::string_view text) {
+  return {{name, std::format("a whole number from 0 to {}", high), For::worlds},
+          [=](SimConfig& config, std::string_view text) {
             const auto number = parse_number<int>(text);
             if (!number || *number < 0 || *number > high) return false;
             config.*member = *number;
@@ -119,7 +120,8 @@ std::vector<Key> fault_keys() {
 std::vector<Key> box_keys() {
   using C = SimConfig;
   return {
-      choice_key<C::Carried>("motion", For::boxes, &C::carried, {{"walk", C::Carried::walk}, {"shake", C::Carried::shake}}),
+      choice_key<C::Carried>("motion", For::boxes, &C::carried,
+                             {{"walk", C::Carried::walk}, {"shake", C::Carried::shake}}),
       choice_key<C::BoxLidar>("lidar", For::boxes, &C::box_lidar,
                               {{"ring32", C::BoxLidar::ring32}, {"ring16", C::BoxLidar::ring16}}),
       number_key("imu_rate", For::boxes, PLLIT_FIELD(imu_rate_hz), 10.0, 1000.0, "Hz"),
@@ -137,20 +139,28 @@ std::vector<Key> world_keys() {
                               {"inspection", C::RigName::inspection}}),
       text_key("motion", "the path of a TUM file", &C::motion),
       number_key("speedup", For::worlds, PLLIT_FIELD(speedup), 0.25, 4.0, "1"),
-      choice_key<C::Way>("way", For::worlds, &C::way,
-                         {{"as_recorded", C::Way::as_recorded}, {"mirrored", C::Way::mirrored}, {"reversed", C::Way::reversed}}),
+      choice_key<C::Way>(
+          "way", For::worlds, &C::way,
+          {{"as_recorded", C::Way::as_recorded}, {"mirrored", C::Way::mirrored}, {"reversed", C::Way::reversed}}),
       number_key("length", For::worlds, PLLIT_FIELD(length_m), 20.0, 50000.0, "metres"),
       text_key("imu", "the name of an IMU model", &C::imu),
       number_key("image_rate", For::worlds, PLLIT_FIELD(image_rate_hz), 0.5, 60.0, "Hz"),
       choice_key<C::Images>("images", For::worlds, &C::images,
-                            {{"none", C::Images::none}, {"agc", C::Images::agc}, {"counts", C::Images::counts}, {"both", C::Images::both}}),
+                            {{"none", C::Images::none},
+                             {"agc", C::Images::agc},
+                             {"counts", C::Images::counts},
+                             {"both", C::Images::both}}),
       choice_key<bool>("light", For::worlds, &C::day, {{"day", true}, {"night", false}}),
       count_key("people", &C::people, 30),
       count_key("cars", &C::cars, 30),
       choice_key<C::Finding>("finding", For::worlds, &C::finding,
-                             {{"none", C::Finding::none}, {"table", C::Finding::table}, {"cabinet", C::Finding::cabinet}, {"pipe", C::Finding::pipe}}),
-      choice_key<C::Arrival>("arrival", For::worlds, &C::arrival,
-                             {{"drawn", C::Arrival::drawn}, {"heated", C::Arrival::heated}, {"brought", C::Arrival::brought}}),
+                             {{"none", C::Finding::none},
+                              {"table", C::Finding::table},
+                              {"cabinet", C::Finding::cabinet},
+                              {"pipe", C::Finding::pipe}}),
+      choice_key<C::Arrival>(
+          "arrival", For::worlds, &C::arrival,
+          {{"drawn", C::Arrival::drawn}, {"heated", C::Arrival::heated}, {"brought", C::Arrival::brought}}),
       number_key("finding_at", For::worlds, PLLIT_FIELD(finding_at_s), 0.0, 36000.0, "seconds"),
       number_key("finding_K", For::worlds, PLLIT_FIELD(finding_K), 0.5, 300.0, "kelvin"),
   };
@@ -196,8 +206,8 @@ std::string unknown_key(std::string_view name, SceneKind scene, const std::vecto
     if (serves(key, scene)) serving.emplace_back(key.name);
   if (std::ranges::contains(keys, name, &Key::name))
     return std::format("{} does not go with {}; its keys are {}", name, name_of(scene), joined(serving));
-  return std::format("\"{}\" is unknown or given twice; did you mean {}? The keys left are {}", name, nearest_word(name, serving),
-                     joined(serving));
+  return std::format("\"{}\" is unknown or given twice; did you mean {}? The keys left are {}", name,
+                     nearest_word(name, serving), joined(serving));
 }
 
 /// What is wrong with `assignment` (key=value), or nothing after it has been applied and its key taken off `keys`.
@@ -257,7 +267,8 @@ Expected<SimConfig> parse_sim_config(std::string_view source) {
   const std::string_view name = source.substr(kPrefix.size(), std::min(question, source.size()) - kPrefix.size());
   const auto scene = std::ranges::find(kScenes, name, [](const auto& entry) { return entry.first; });
   if (scene == kScenes.end())
-    return wrong(std::format("no scene \"{}\"; did you mean {}? There is {}", name, nearest_word(name, scene_names()), joined(scene_names())));
+    return wrong(std::format("no scene \"{}\"; did you mean {}? There is {}", name, nearest_word(name, scene_names()),
+                             joined(scene_names())));
 
   SimConfig config;
   config.scene = scene->second;

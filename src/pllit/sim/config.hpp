@@ -17,7 +17,8 @@ struct FaultInterval {
   bool contains(double t_s) const { return t_s >= from_s && t_s < to_s; }
 };
 
-/// What goes wrong, and when. An IMU sample and an image are in an interval by their true time, a scan by the true end of its turn.
+/// What goes wrong, and when. An IMU sample and an image are in an interval by their true time, a scan by the true end
+/// of its turn.
 struct SimFaults {
   FaultInterval imu_gap;      ///< IMU samples are lost
   FaultInterval lidar_gap;    ///< scans are lost: a silent LiDAR
@@ -33,8 +34,8 @@ struct SimFaults {
   double clock_drift_ppm = 0.0;  ///< of the LiDAR's and the camera's clock against the IMU's
 };
 
-/// Boxes are exact, plain worlds for tests: rectangles, a spinning LiDAR, an IMU. The other scenes are worlds of triangles with heat and
-/// light, seen by a rig of real sensors that the estimator knows imperfectly.
+/// Boxes are exact, plain worlds for tests: rectangles, a spinning LiDAR, an IMU. The other scenes are worlds of
+/// triangles with heat and light, seen by a rig of real sensors that the estimator knows imperfectly.
 enum class SceneKind { box_room, box_corridor, box_street, room, corridor, stairs, plant, street, field };
 
 struct SimConfig {
@@ -78,8 +79,8 @@ struct SimConfig {
 bool is_box(SceneKind scene);
 std::string_view name_of(SceneKind scene);
 
-/// Reads sim:SCENE?key=value&... What is unknown, repeated, out of range or does not go together is an input error that says what
-/// would be right; sim_keys() lists the keys.
+/// Reads sim:SCENE?key=value&... What is unknown, repeated, out of range or does not go together is an input error that
+/// says what would be right; sim_keys() lists the keys.
 Expected<SimConfig> parse_sim_config(std::string_view source);
 
 struct SimKey {

@@ -30,7 +30,8 @@ void FaultyLine::push(SensorEvent event, Time next) {
     sample.gyro_rps = sample.accel_mps2 = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
   if (faults_.swapped_imu.contains(t_s) && first_of_pair) event.received = next + Duration(1);
-  const bool late = (lidar && faults_.late_scans.contains(t_s)) || (!imu && !lidar && faults_.late_images.contains(t_s));
+  const bool late =
+      (lidar && faults_.late_scans.contains(t_s)) || (!imu && !lidar && faults_.late_images.contains(t_s));
   if (late) event.received += from_seconds(faults_.late_by_s);
   deliver(std::move(event), t_s);
 }

@@ -11,10 +11,12 @@
 
 namespace pllit {
 
-/// Takes messages in order of their true times and hands them out in the order received, with the faults that were asked for.
+/// Takes messages in order of their true times and hands them out
+/// in the order received, with the faults that were asked for.
 class FaultyLine {
  public:
-  FaultyLine(const SimFaults& faults, Time start, std::uint64_t seed) : faults_(faults), start_(start), random_(seed, 50) {}
+  FaultyLine(const SimFaults& faults, Time start, std::uint64_t seed)
+      : faults_(faults), start_(start), random_(seed, 50) {}
 
   /// A message whose sensor was done with it at `event.received`. `next`: when the same sensor's next one will come.
   void push(SensorEvent event, Time next);

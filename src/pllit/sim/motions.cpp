@@ -30,9 +30,12 @@ Expected<Trajectory> edited(const SimConfig& config, const SimRig& rig, Trajecto
 
 Motion upright_motion(const SimConfig& config) {
   switch (config.scene) {
-    case SceneKind::corridor: return corridor_walk({.seed = config.seed, .length_m = config.length_m.value_or(100.0)});
-    case SceneKind::stairs: return stair_climb({.seed = config.seed});
-    default: return inspection_walk({.seed = config.seed});
+    case SceneKind::corridor:
+      return corridor_walk({.seed = config.seed, .length_m = config.length_m.value_or(100.0)});
+    case SceneKind::stairs:
+      return stair_climb({.seed = config.seed});
+    default:
+      return inspection_walk({.seed = config.seed});
   }
 }
 
@@ -48,7 +51,8 @@ Expected<ChosenMotion> calm_motion(const SimConfig& config, const SimRig& rig, c
     return way ? along(*way, rig) : std::unexpected(way.error());
   }
   if (config.scene == SceneKind::street || config.scene == SceneKind::field) {
-    Trajectory drive = street_drive({.seed = config.seed, .length_m = config.length_m.value_or(500.0), .speed_mps = rig.on_car ? 10.0 : 1.4});
+    Trajectory drive = street_drive(
+        {.seed = config.seed, .length_m = config.length_m.value_or(500.0), .speed_mps = rig.on_car ? 10.0 : 1.4});
     for (StampedPose& pose : drive) pose.T_W_I = pose.T_W_I * pose_from(rig.R_B_I, Vector3d(0.0, 0.0, rig.height_m));
     return along(drive, rig);
   }
@@ -58,10 +62,12 @@ Expected<ChosenMotion> calm_motion(const SimConfig& config, const SimRig& rig, c
 
 }  // namespace
 
-Expected<ChosenMotion> choose_motion(const SimConfig& config, const SimRig& rig, const std::optional<Trajectory>& path) {
+Expected<ChosenMotion> choose_motion(const SimConfig& config, const SimRig& rig,
+                                     const std::optional<Trajectory>& path) {
   auto chosen = calm_motion(config, rig, path);
   if (chosen && !config.ideal)
-    chosen->motion = chosen->motion.with_vibration(rig.on_car ? vehicle_vibration(config.seed) : hand_held_vibration(config.seed));
+    chosen->motion =
+        chosen->motion.with_vibration(rig.on_car ? vehicle_vibration(config.seed) : hand_held_vibration(config.seed));
   return chosen;
 }
 

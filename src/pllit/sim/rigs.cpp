@@ -26,7 +26,11 @@ Matrix3d looking_ahead() {
 
 /// The organisers' IMU <- LiDAR of Hilti-Oxford 2022. The Alphasense holds a BMI085.
 SimRig hilti2022() {
-  SimRig rig{.name = "hilti2022", .imu = known_imu("bmi085"), .lidar = pandar_xt32(), .thermal = {}, .visible = hilti2022_cam0()};
+  SimRig rig{.name = "hilti2022",
+             .imu = known_imu("bmi085"),
+             .lidar = pandar_xt32(),
+             .thermal = {},
+             .visible = hilti2022_cam0()};
   Matrix3d R_I_L;
   R_I_L << 0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
   rig.T_I_L = pose_of(R_I_L, {-0.001, -0.00855, 0.055});
@@ -36,21 +40,28 @@ SimRig hilti2022() {
   return rig;
 }
 
-/// The Horizon's factory lever arm to its BMI088; the camera as composed from 4DRadarSLAM's calibration (nearest rotation).
+/// The Horizon's factory lever arm to its BMI088; the camera as
+/// composed from 4DRadarSLAM's calibration (nearest rotation).
 SimRig ntu4dradlm() {
-  SimRig rig{.name = "ntu4dradlm", .imu = known_imu("bmi088"), .lidar = livox_horizon(), .thermal = ntu4dradlm_thermal(), .visible = {}};
+  SimRig rig{.name = "ntu4dradlm",
+             .imu = known_imu("bmi088"),
+             .lidar = livox_horizon(),
+             .thermal = ntu4dradlm_thermal(),
+             .visible = {}};
   rig.height_m = 1.7;
   rig.on_car = true;
   rig.accel_in_g = true;
   rig.T_I_L = pose_from(SO3::Identity(), {0.05512, 0.02226, -0.0297});
-  rig.T_I_C = pose_from(rotation_from(Eigen::Quaterniond(0.494781267106, -0.503658973323, 0.498796360175, -0.502713961799)),
-                        {0.325100658, -0.131400486, 0.061929141});
+  rig.T_I_C =
+      pose_from(rotation_from(Eigen::Quaterniond(0.494781267106, -0.503658973323, 0.498796360175, -0.502713961799)),
+                {0.325100658, -0.131400486, 0.061929141});
   return rig;
 }
 
 /// Assumed: the camera 6 cm before and 5 cm under the LiDAR, the IMU below both.
 SimRig inspection() {
-  SimRig rig{.name = "inspection", .imu = known_imu("hi71"), .lidar = livox_mid360(), .thermal = botu_tb640(), .visible = {}};
+  SimRig rig{
+      .name = "inspection", .imu = known_imu("hi71"), .lidar = livox_mid360(), .thermal = botu_tb640(), .visible = {}};
   rig.T_I_L = pose_from(SO3::Identity(), {0.02, 0.0, 0.12});
   rig.T_I_C = pose_of(looking_ahead(), {0.08, 0.0, 0.07});
   return rig;
@@ -77,9 +88,12 @@ Rig SimRig::known() const {
 
 SimRig sim_rig(SimConfig::RigName name) {
   switch (name) {
-    case SimConfig::RigName::hilti2022: return hilti2022();
-    case SimConfig::RigName::ntu4dradlm: return ntu4dradlm();
-    case SimConfig::RigName::inspection: return inspection();
+    case SimConfig::RigName::hilti2022:
+      return hilti2022();
+    case SimConfig::RigName::ntu4dradlm:
+      return ntu4dradlm();
+    case SimConfig::RigName::inspection:
+      return inspection();
   }
   return inspection();
 }
@@ -98,7 +112,8 @@ SimRig as_built(SimRig rig, std::uint64_t seed) {
     }
   rig.lidar_clock = from_seconds(random.uniform(-0.005, 0.005));
   rig.camera_clock = from_seconds(random.uniform(-0.005, 0.005));
-  for (double* figure : {&rig.imu.noise.gyro_density, &rig.imu.noise.accel_density, &rig.imu.noise.gyro_bias_walk, &rig.imu.noise.accel_bias_walk})
+  for (double* figure : {&rig.imu.noise.gyro_density, &rig.imu.noise.accel_density, &rig.imu.noise.gyro_bias_walk,
+                         &rig.imu.noise.accel_bias_walk})
     *figure *= std::exp2(random.uniform(-1.0, 1.0));
   return rig;
 }

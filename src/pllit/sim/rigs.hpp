@@ -16,9 +16,9 @@ namespace pllit {
 struct SimRig {
   std::string name;
   SO3 R_B_I = SO3::Identity();
-  double height_m = 1.3;      ///< of I above the ground
+  double height_m = 1.3;  ///< of I above the ground
   bool on_car = false;
-  bool accel_in_g = false;    ///< as Livox's drivers publish it
+  bool accel_in_g = false;  ///< as Livox's drivers publish it
   ImuModel imu;
   RayLidar lidar;
   SE3 T_I_L = SE3::Identity(), T_I_C = SE3::Identity();
@@ -31,12 +31,14 @@ struct SimRig {
   Rig known() const;
 };
 
-/// hilti2022: PandarXT-32, Alphasense IMU (z down) and its fisheye cam0, in the hands. ntu4dradlm: Livox Horizon with its own IMU and a
-/// thermal camera, on a car. inspection: Livox Mid-360, HI71 and a thermal camera of the TB640's class, in the hands.
+/// hilti2022: PandarXT-32, Alphasense IMU (z down) and its fisheye cam0, in the hands. ntu4dradlm: Livox Horizon with
+/// its own IMU and a thermal camera, on a car. inspection: Livox Mid-360, HI71 and a thermal camera of the TB640's
+/// class, in the hands.
 SimRig sim_rig(SimConfig::RigName name);
 
-/// The rig as it was really built, unlike its data sheet: the camera is turned by 0.1 to 0.3 degrees and moved by 5 to 15 mm, its focal
-/// length is wrong by up to 0.3 %, the clocks by up to 5 ms, and the IMU's noise is half to twice what was promised.
+/// The rig as it was really built, unlike its data sheet: the camera is turned by 0.1
+/// to 0.3 degrees and moved by 5 to 15 mm, its focal length is wrong by up to 0.3 %,
+/// the clocks by up to 5 ms, and the IMU's noise is half to twice what was promised.
 SimRig as_built(SimRig rig, std::uint64_t seed);
 /// The rig without noise and bias.
 SimRig without_errors(SimRig rig);

@@ -76,7 +76,8 @@ class RayLidarSensor : public SimSensor {
 /// What thermal and visible cameras share: when they look, and from where.
 class CameraSensor : public SimSensor {
  public:
-  CameraSensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around, std::uint64_t seed)
+  CameraSensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around,
+               std::uint64_t seed)
       : start_(motion.start()),
         period_(from_seconds(1.0 / stream.rate_hz)),
         clock_(rig.camera_clock),
@@ -92,7 +93,8 @@ class CameraSensor : public SimSensor {
     ++index_;
     around_.caster.move_to(path_(time).translation(), to_seconds(time - start_));
     std::vector<SensorEvent> events;
-    for (cv::Mat& counts : images(time)) events.push_back({time, CameraFrame{.time = time + clock_, .counts = std::move(counts)}});
+    for (cv::Mat& counts : images(time))
+      events.push_back({time, CameraFrame{.time = time + clock_, .counts = std::move(counts)}});
     return events;
   }
 
@@ -108,8 +110,8 @@ class CameraSensor : public SimSensor {
 
 class ThermalSensor : public CameraSensor {
  public:
-  ThermalSensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around, std::uint64_t seed,
-                Sightings& sightings)
+  ThermalSensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around,
+                std::uint64_t seed, Sightings& sightings)
       : CameraSensor(motion, rig, stream, around, seed),
         stream_(stream),
         camera_(model_of(rig, stream), *around.place, motion.start(), seed),
@@ -121,7 +123,12 @@ class ThermalSensor : public CameraSensor {
     model.rate_hz = stream.rate_hz;
     if (stream.ideal) {
       model.netd_K = 0.0;
-      model.fixed_pattern = {.column_walk = 0.0, .pixel_walk = 0.0, .whole_walk = 0.0, .column_left = 0.0, .pixel_left = 0.0, .whole_left = 0.0};
+      model.fixed_pattern = {.column_walk = 0.0,
+                             .pixel_walk = 0.0,
+                             .whole_walk = 0.0,
+                             .column_left = 0.0,
+                             .pixel_left = 0.0,
+                             .whole_left = 0.0};
     }
     return model;
   }
@@ -142,7 +149,8 @@ class ThermalSensor : public CameraSensor {
 
 class VisibleSensor : public CameraSensor {
  public:
-  VisibleSensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around, std::uint64_t seed)
+  VisibleSensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around,
+                std::uint64_t seed)
       : CameraSensor(motion, rig, stream, around, seed), camera_(*rig.visible, *around.place, motion.start(), seed) {}
 
  private:
@@ -158,21 +166,23 @@ std::unique_ptr<SimSensor> imu_sensor(const Motion& motion, ImuStream stream, bo
   return std::make_unique<ImuSensor>(motion, std::move(stream), accel_in_g);
 }
 
-std::unique_ptr<SimSensor> box_lidar_sensor(const Motion& motion, const SpinningLidar& lidar, const PlanesWorld& world, std::uint64_t seed) {
+std::unique_ptr<SimSensor> box_lidar_sensor(const Motion& motion, const SpinningLidar& lidar, const PlanesWorld& world,
+                                            std::uint64_t seed) {
   return std::make_unique<BoxLidarSensor>(motion, lidar, world, seed);
 }
 
-std::unique_ptr<SimSensor> lidar_sensor(const Motion& motion, const SimRig& rig, Surroundings& around, std::uint64_t seed) {
+std::unique_ptr<SimSensor> lidar_sensor(const Motion& motion, const SimRig& rig, Surroundings& around,
+                                        std::uint64_t seed) {
   return std::make_unique<RayLidarSensor>(motion, rig, around, seed);
 }
 
-std::unique_ptr<SimSensor> thermal_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around,
-                                          std::uint64_t seed, Sightings& sightings) {
+std::unique_ptr<SimSensor> thermal_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream,
+                                          Surroundings& around, std::uint64_t seed, Sightings& sightings) {
   return std::make_unique<ThermalSensor>(motion, rig, stream, around, seed, sightings);
 }
 
-std::unique_ptr<SimSensor> visible_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around,
-                                          std::uint64_t seed) {
+std::unique_ptr<SimSensor> visible_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream,
+                                          Surroundings& around, std::uint64_t seed) {
   return std::make_unique<VisibleSensor>(motion, rig, stream, around, seed);
 }
 

@@ -35,8 +35,10 @@ struct Surroundings {
 
 /// The referents of every sensor must outlive it.
 std::unique_ptr<SimSensor> imu_sensor(const Motion& motion, ImuStream stream, bool accel_in_g);
-std::unique_ptr<SimSensor> box_lidar_sensor(const Motion& motion, const SpinningLidar& lidar, const PlanesWorld& world, std::uint64_t seed);
-std::unique_ptr<SimSensor> lidar_sensor(const Motion& motion, const SimRig& rig, Surroundings& around, std::uint64_t seed);
+std::unique_ptr<SimSensor> box_lidar_sensor(const Motion& motion, const SpinningLidar& lidar, const PlanesWorld& world,
+                                            std::uint64_t seed);
+std::unique_ptr<SimSensor> lidar_sensor(const Motion& motion, const SimRig& rig, Surroundings& around,
+                                        std::uint64_t seed);
 
 struct ImageStream {
   double rate_hz = 10.0;
@@ -44,9 +46,9 @@ struct ImageStream {
   bool ideal = false;               ///< images have no noise and no stamps that are late
 };
 /// A thermal camera also tells which findings it could see first when.
-std::unique_ptr<SimSensor> thermal_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around,
-                                          std::uint64_t seed, Sightings& sightings);
-std::unique_ptr<SimSensor> visible_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream, Surroundings& around,
-                                          std::uint64_t seed);
+std::unique_ptr<SimSensor> thermal_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream,
+                                          Surroundings& around, std::uint64_t seed, Sightings& sightings);
+std::unique_ptr<SimSensor> visible_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream,
+                                          Surroundings& around, std::uint64_t seed);
 
 }  // namespace pllit

@@ -15,7 +15,9 @@ namespace {
 constexpr std::uint64_t kSeedsPerRow = 1000;
 
 Expected<Sequence> parse_row(const std::string& name, const YAML::Node& row) {
-  const auto wrong = [&](const std::string& what) { return input_error(std::format("row {} of the sequences: {}", name, what)); };
+  const auto wrong = [&](const std::string& what) {
+    return input_error(std::format("row {} of the sequences: {}", name, what));
+  };
   for (const char* key : {"source", "world", "config", "tier"})
     if (!row[key]) return wrong(std::format("{} is missing", key));
   const auto tier = std::ranges::find(kTierNames, row["tier"].as<std::string>());
@@ -38,7 +40,9 @@ std::optional<std::uint64_t> row_seed(std::string_view text) {
 
 }  // namespace
 
-std::string Sequence::address(std::uint64_t seed) const { return std::format("{}&seed={}", source, world * kSeedsPerRow + seed); }
+std::string Sequence::address(std::uint64_t seed) const {
+  return std::format("{}&seed={}", source, world * kSeedsPerRow + seed);
+}
 
 Expected<std::vector<Sequence>> parse_sequences(std::string_view yaml) try {
   std::vector<Sequence> sequences;
@@ -58,9 +62,10 @@ Expected<std::string> expanded_address(std::string_view source) {
   const std::size_t question = std::min(source.find('?'), source.size());
   constexpr std::string_view kPrefix = "sim:";
   const auto rows = sequences();
-  const auto row = source.starts_with(kPrefix)
-                       ? std::ranges::find(rows, source.substr(kPrefix.size(), question - kPrefix.size()), &Sequence::name)
-                       : rows.end();
+  const auto row =
+      source.starts_with(kPrefix)
+          ? std::ranges::find(rows, source.substr(kPrefix.size(), question - kPrefix.size()), &Sequence::name)
+          : rows.end();
   if (row == rows.end()) return std::string(source);
   std::uint64_t seed = 0;
   std::string more;
@@ -72,7 +77,8 @@ Expected<std::string> expanded_address(std::string_view source) {
       continue;
     }
     const auto given = row_seed(assignment.substr(5));
-    if (!given) return input_error(std::format("{}: a row's seed is a whole number from 0 to {}", source, kSeedsPerRow - 1));
+    if (!given)
+      return input_error(std::format("{}: a row's seed is a whole number from 0 to {}", source, kSeedsPerRow - 1));
     seed = *given;
   }
   return row->address(seed) + more;

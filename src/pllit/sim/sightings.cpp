@@ -28,7 +28,8 @@ std::optional<Window> window_of(const Actor& actor, const Camera& camera, const 
   return Window{floor_of(seen.min().x()), floor_of(seen.min().y()), floor_of(seen.max().x()), floor_of(seen.max().y())};
 }
 
-bool fills_enough(std::uint32_t actor, const Window& window, const RayCaster& caster, const Camera& camera, const SE3& T_W_C) {
+bool fills_enough(std::uint32_t actor, const Window& window, const RayCaster& caster, const Camera& camera,
+                  const SE3& T_W_C) {
   const Matrix3d R_W_C = T_W_C.rotation();
   int pixels = 0;
   for (int v = window.top; v <= window.bottom; ++v)

@@ -16,7 +16,8 @@ class Sightings {
 
   explicit Sightings(const Place* place) : place_(place), first_s_(place ? place->actors().size() : 0) {}
 
-  /// A frame at t_s since the start: findings that have begun to be one (they appeared, or heat up) and fill enough pixels.
+  /// A frame at t_s since the start: findings that have begun to
+  /// be one (they appeared, or heat up) and fill enough pixels.
   void look(const RayCaster& caster, const Camera& camera, const SE3& T_W_C, double t_s);
   const std::vector<std::optional<double>>& first_s() const { return first_s_; }
 

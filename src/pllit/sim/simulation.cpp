@@ -5,12 +5,12 @@
 #include <format>
 #include <utility>
 
+#include "pllit/sim/box_scene.hpp"
 #include "pllit/sim/faults.hpp"
 #include "pllit/sim/motions.hpp"
 #include "pllit/sim/places/make_place.hpp"
 #include "pllit/sim/random.hpp"
 #include "pllit/sim/sensors.hpp"
-#include "pllit/sim/box_scene.hpp"
 
 namespace pllit {
 
@@ -60,12 +60,18 @@ SimConfig::RigName rig_for(const SimConfig& config) {
 
 PlaceKind place_kind(SceneKind scene) {
   switch (scene) {
-    case SceneKind::corridor: return PlaceKind::corridor;
-    case SceneKind::stairs: return PlaceKind::stairs;
-    case SceneKind::plant: return PlaceKind::plant;
-    case SceneKind::street: return PlaceKind::street;
-    case SceneKind::field: return PlaceKind::field;
-    default: return PlaceKind::room;
+    case SceneKind::corridor:
+      return PlaceKind::corridor;
+    case SceneKind::stairs:
+      return PlaceKind::stairs;
+    case SceneKind::plant:
+      return PlaceKind::plant;
+    case SceneKind::street:
+      return PlaceKind::street;
+    case SceneKind::field:
+      return PlaceKind::field;
+    default:
+      return PlaceKind::room;
   }
 }
 
@@ -86,7 +92,8 @@ PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motio
   PlaceConfig place{.kind = place_kind(config.scene), .seed = config.seed, .path_W = {}};
   place.duration_s = to_seconds(end - motion.start());
   const int steps = std::max(2, static_cast<int>(place.duration_s / 0.2));
-  for (int i = 0; i <= steps; ++i) place.path_W.push_back(motion.at(motion.start() + from_seconds(place.duration_s * i / steps)).T_W_I.translation());
+  for (int i = 0; i <= steps; ++i)
+    place.path_W.push_back(motion.at(motion.start() + from_seconds(place.duration_s * i / steps)).T_W_I.translation());
   place.height_m = rig.height_m;
   place.clearance_m = rig.on_car ? 2.5 : 0.6;
   place.light = config.day ? Light::day : Light::night;
@@ -111,7 +118,9 @@ SceneObject object_of(const Actor& actor, const SimConfig& config, const std::ve
   const bool there = begins <= 0.0;
   return {.name = actor.name,
           .finding = actor.finding,
-          .arrival = there ? "there" : actor.heating.empty() ? "brought" : "heated",
+          .arrival = there                   ? "there"
+                     : actor.heating.empty() ? "brought"
+                                             : "heated",
           .begins_s = begins,
           .by_K = actor.finding ? config.finding_K : 0.0,
           .centroid_W = visible_centroid_W(actor, begins, path_W),
@@ -151,9 +160,10 @@ Expected<void> furnish_world(Parts& parts) {
                            .agc = config.images != SimConfig::Images::counts,
                            .counts = config.images != SimConfig::Images::agc,
                            .ideal = config.ideal};
-  parts.sensors.push_back(parts.built.thermal
-                              ? thermal_sensor(parts.motion, parts.built, stream, *parts.around, config.seed, *parts.sightings)
-                              : visible_sensor(parts.motion, parts.built, stream, *parts.around, config.seed));
+  parts.sensors.push_back(
+      parts.built.thermal
+          ? thermal_sensor(parts.motion, parts.built, stream, *parts.around, config.seed, *parts.sightings)
+          : visible_sensor(parts.motion, parts.built, stream, *parts.around, config.seed));
   return {};
 }
 
@@ -170,7 +180,8 @@ Expected<Simulation> Simulation::make(const SimConfig& config, const std::option
     return Simulation(std::move(parts));
   }
   if (config.motion.empty() == path.has_value())
-    return failure(path ? "a path was given that the simulation does not name" : "the simulation names a motion's file that was not read");
+    return failure(path ? "a path was given that the simulation does not name"
+                        : "the simulation names a motion's file that was not read");
   std::optional<ImuModel> imu;
   if (!config.imu.empty()) {
     auto model = imu_model(config.imu);

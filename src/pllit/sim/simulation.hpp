@@ -1,5 +1,5 @@
-// The simulator: a rig with LiDAR, IMU and camera whose motion, surroundings and errors are known exactly. It stands in for a recording
-// wherever events are read.
+// The simulator: a rig with LiDAR, IMU and camera whose motion, surroundings and errors are known exactly. It stands in
+// for a recording wherever events are read.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,13 @@ namespace pllit {
 inline constexpr int kSimulatorVersion = 1;
 
 /// Events in the order received: IMU samples at their time, scans when their turn is complete (after an IMU sample of
-/// the same time), images at theirs. They are made as they are asked for, so memory does not grow with the duration; the same
-/// configuration gives the same bytes.
+/// the same time), images at theirs. They are made as they are asked for, so memory does not grow with the duration;
+/// the same configuration gives the same bytes.
 class Simulation : public EventSource {
  public:
-  /// `path`: the poses in the file that config.motion names. Input errors: such a path is missing or cannot be driven, no room for a
-  /// finding, a wrong IMU's name. The configuration's values lie in the ranges that parse_sim_config() keeps to.
+  /// `path`: the poses in the file that config.motion names. Input errors: such a
+  /// path is missing or cannot be driven, no room for a finding, a wrong IMU's name.
+  /// The configuration's values lie in the ranges that parse_sim_config() keeps to.
   static Expected<Simulation> make(const SimConfig& config, const std::optional<Trajectory>& path = std::nullopt);
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

@@ -67,7 +67,7 @@ struct Config {
   StartUpConfig start;
   PlaneMapConfig map;
   double map_file_voxel_m = 0.1;  ///< the written map holds one point in each voxel of this size
-  int threads = 0;  ///< 0: one for every core
+  int threads = 0;                ///< 0: one for every core
   ScanConfig scan;
   PlaneResidualConfig planes;
   DegeneracyConfig degeneracy;

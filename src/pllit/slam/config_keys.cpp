@@ -143,8 +143,10 @@ void list(Section section, ScanConfig& config) {
 void list(Section section, DriftConfig& config) {
   section.add(PLLIT_KEY(gain), "How much more than independent errors the match errors of following scans add up.", "",
               {0.0, 1000.0});
-  section.add(PLLIT_KEY(shift_m), "Drift in position that no scan knows of itself, one sigma.", "m/sqrt(m)", {0.0, 1.0});
-  section.add(PLLIT_KEY(turn_rad), "Drift in attitude that no scan knows of itself, one sigma.", "rad/sqrt(m)", {0.0, 1.0});
+  section.add(PLLIT_KEY(shift_m), "Drift in position that no scan knows of itself, one sigma.", "m/sqrt(m)",
+              {0.0, 1.0});
+  section.add(PLLIT_KEY(turn_rad), "Drift in attitude that no scan knows of itself, one sigma.", "rad/sqrt(m)",
+              {0.0, 1.0});
 }
 
 void list(Section section, HealthConfig& config) {
@@ -155,7 +157,8 @@ void list(Section section, HealthConfig& config) {
   section.add(PLLIT_KEY(max_speed_mps), "A higher speed is impossible: lost.", "m/s", {1.0, 1000.0});
   section.add(PLLIT_KEY(silent_degraded_s), "Without a matched scan for this long: degraded.", "s", {0.05, 60.0});
   section.add(PLLIT_KEY(silent_lost_s), "Without a matched scan for this long: lost.", "s", {0.1, 600.0});
-  section.add(PLLIT_KEY(restart_after), "Scans in a row without a match before the map is begun anew.", "", {1.0, 1000.0});
+  section.add(PLLIT_KEY(restart_after), "Scans in a row without a match before the map is begun anew.", "",
+              {1.0, 1000.0});
 }
 
 void list(Section section, DegeneracyConfig& config) {
@@ -177,8 +180,8 @@ void list_details(Section section, StartUpConfig& config) {
               "rad/s", {1e-4, 1.0});
   section.add(PLLIT_KEY(still_accel_spread_mps2),
               "At rest every axis of the accelerometer varies less, standard deviation.", "m/s^2", {1e-3, 10.0});
-  section.add(PLLIT_KEY(still_slow_spread_rps), "At rest the means over tenths of the window vary less, standard deviation.",
-              "rad/s", {1e-5, 1.0});
+  section.add(PLLIT_KEY(still_slow_spread_rps),
+              "At rest the means over tenths of the window vary less, standard deviation.", "rad/s", {1e-5, 1.0});
   section.add(PLLIT_KEY(still_rate_rps), "A mean rate above this is motion, unless gravity shows it to be a bias.",
               "rad/s", {1e-5, 1.0});
   section.add(PLLIT_KEY(moving_accel_mps2), "Mean acceleration that a moving start may have, one sigma.", "m/s^2",

@@ -6,15 +6,17 @@
 namespace pllit {
 
 struct DriftConfig {
-  /// Variance of the match that new parts of the map inherit, as a multiple of the filter's: the errors of scans that follow
-  /// each other are alike, so they add up faster than independent ones.
+  /// Variance of the match that new parts of the map inherit, as a multiple of the filter's: the errors of scans that
+  /// follow each other are alike, so they add up faster than independent ones.
   double gain = 1.0;
-  double shift_m = 5e-4;      ///< what no scan knows of itself (calibration, rounding of surfaces): m per square root of a metre
-  double turn_rad = 3e-5;     ///< likewise, rad per square root of a metre
+  double shift_m =
+      5e-4;  ///< what no scan knows of itself (calibration, rounding of surfaces): m per square root of a metre
+  double turn_rad = 3e-5;  ///< likewise, rad per square root of a metre
 };
 
-/// The filter measures poses against the map, and the map was built from poses. Each scan hands its pose error on to the part of the
-/// map that it adds, so the map's own error walks: this is the covariance of that walk, in (theta, p) of W.
+/// The filter measures poses against the map, and the map was built from poses.
+/// Each scan hands its pose error on to the part of the map that it adds, so the
+/// map's own error walks: this is the covariance of that walk, in (theta, p) of W.
 class MapDrift {
  public:
   explicit MapDrift(const DriftConfig& config) : config_(config) {}

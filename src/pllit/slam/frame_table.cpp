@@ -15,10 +15,9 @@ std::string joined(const std::vector<std::string>& reasons) {
 }  // namespace
 
 std::vector<std::string> health_columns() {
-  return {"time_s",      "state",       "reasons",     "points",          "candidates",   "inliers",
-          "residual_m",  "iterations",  "speed_mps",   "sigma_x_m",       "sigma_y_m",    "sigma_z_m",
-          "sigma_yaw_deg", "share_x",   "share_y",     "share_z",         "weakest_share", "degenerate",
-          "since_match_s", "imu_gap_s", "frame_ms"};
+  return {"time_s",     "state",     "reasons",       "points",     "candidates",    "inliers",       "residual_m",
+          "iterations", "speed_mps", "sigma_x_m",     "sigma_y_m",  "sigma_z_m",     "sigma_yaw_deg", "share_x",
+          "share_y",    "share_z",   "weakest_share", "degenerate", "since_match_s", "imu_gap_s",     "frame_ms"};
 }
 
 std::vector<FrameCell> health_row(const FrameEstimate& frame) {
@@ -59,7 +58,8 @@ PointTable MapRecorder::new_points(const FrameEstimate& frame) {
     points_W.push_back((R * p_I.cast<double>() + frame.posterior.mean.p_W).cast<float>());
 
   PointTable table{.points = {}, .fields = {{"intensity", {}}, {"time", {}}}};
-  if (frame.health.state == HealthState::lost || (frame.facts.has_scan && !frame.facts.matched && !frame.facts.map_empty))
+  if (frame.health.state == HealthState::lost ||
+      (frame.facts.has_scan && !frame.facts.matched && !frame.facts.map_empty))
     return table;  // a pose that does not fit the map must not enter it
   for (const std::size_t i : fresh_.select(points_W, frame.posterior.mean.p_W)) {
     table.points.push_back(points_W[i]);

@@ -6,10 +6,14 @@ namespace pllit {
 
 std::string_view name_of(HealthState state) {
   switch (state) {
-    case HealthState::initialising: return "initialising";
-    case HealthState::good: return "good";
-    case HealthState::degraded: return "degraded";
-    case HealthState::lost: return "lost";
+    case HealthState::initialising:
+      return "initialising";
+    case HealthState::good:
+      return "good";
+    case HealthState::degraded:
+      return "degraded";
+    case HealthState::lost:
+      return "lost";
   }
   return "unknown";
 }
@@ -26,7 +30,8 @@ Health assess(const FrameFacts& facts, const HealthConfig& config) {
   };
   const double share = facts.candidates > 0 ? static_cast<double>(facts.inliers) / facts.candidates : 0.0;
   if (facts.map_restarted)
-    mark(HealthState::lost, std::format("{} scans in a row did not match; the map was begun anew", config.restart_after));
+    mark(HealthState::lost,
+         std::format("{} scans in a row did not match; the map was begun anew", config.restart_after));
   if (facts.since_match_s > config.silent_lost_s)
     mark(HealthState::lost, std::format("no matched scan for {:.1f} s", facts.since_match_s));
   if (facts.speed_mps > config.max_speed_mps)
@@ -38,7 +43,8 @@ Health assess(const FrameFacts& facts, const HealthConfig& config) {
     mark(HealthState::degraded, std::format("LiDAR silent for {:.1f} s", facts.since_match_s));
   if (facts.map_empty) return health;
   if (facts.has_scan && !facts.matched)
-    mark(HealthState::degraded, std::format("scan not matched: {} of {} points fit the map", facts.inliers, facts.candidates));
+    mark(HealthState::degraded,
+         std::format("scan not matched: {} of {} points fit the map", facts.inliers, facts.candidates));
   if (!facts.matched) return health;
   if (facts.localizability.degenerate > 0)
     mark(HealthState::degraded, "LiDAR does not observe " + describe_degeneracy(facts.localizability));

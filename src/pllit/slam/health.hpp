@@ -13,14 +13,14 @@ enum class HealthState { initialising, good, degraded, lost };
 std::string_view name_of(HealthState state);
 
 struct HealthConfig {
-  int min_inliers = 60;                ///< fewer matched points: the scan does not count
-  double min_inlier_share = 0.25;      ///< of the points that have a plane: likewise
-  double low_inlier_share = 0.45;      ///< below this the match is doubtful: degraded
-  double max_residual_m = 0.15;        ///< rms of the matched points; above: degraded
-  double max_speed_mps = 60.0;         ///< faster than this cannot be: lost
-  double silent_degraded_s = 0.3;      ///< without a matched scan for this long: degraded
-  double silent_lost_s = 5.0;          ///< without a matched scan for this long: lost
-  int restart_after = 10;              ///< scans in a row that do not match before the map is begun anew
+  int min_inliers = 60;            ///< fewer matched points: the scan does not count
+  double min_inlier_share = 0.25;  ///< of the points that have a plane: likewise
+  double low_inlier_share = 0.45;  ///< below this the match is doubtful: degraded
+  double max_residual_m = 0.15;    ///< rms of the matched points; above: degraded
+  double max_speed_mps = 60.0;     ///< faster than this cannot be: lost
+  double silent_degraded_s = 0.3;  ///< without a matched scan for this long: degraded
+  double silent_lost_s = 5.0;      ///< without a matched scan for this long: lost
+  int restart_after = 10;          ///< scans in a row that do not match before the map is begun anew
 };
 
 /// What a frame showed.

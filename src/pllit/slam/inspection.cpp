@@ -86,7 +86,8 @@ Inspection Inspector::finish() const {
     const double configured_s = to_seconds(rig_.lidar_delay);
     if (offset.found && std::abs(offset.offset_s - configured_s) > std::max(0.02, 0.5 / inspection.imu.rate_hz))
       inspection.warnings.push_back(
-          std::format("the LiDAR's clock seems {:.3f} s off; try --set rig.lidar.delay_s={:.3f}", offset.offset_s, offset.offset_s));
+          std::format("the LiDAR's clock seems {:.3f} s off; try --set rig.lidar.delay_s={:.3f}", offset.offset_s,
+                      offset.offset_s));
   } else {
     inspection.imu_to_lidar.reason = "not looked for, as a run is not possible";
   }
@@ -123,14 +124,19 @@ void Inspector::judge(Inspection& inspection) const {
                         std::max(0.0, inspection.overlap_s), to_seconds(lidar.first - imu.first)));
   if (inspection.scan_span_s <= 0.0)
     warn("the scans carry no time for each point, so motion during a sweep cannot be taken out");
-  if (imu.rate_hz < 50.0) warn(std::format("the IMU has {:.0f} Hz; 100 Hz and more make turns and shocks harmless", imu.rate_hz));
+  if (imu.rate_hz < 50.0)
+    warn(std::format("the IMU has {:.0f} Hz; 100 Hz and more make turns and shocks harmless", imu.rate_hz));
   if (imu.gaps > 0) warn(std::format("{} gaps in the IMU data, the longest {:.3f} s", imu.gaps, imu.longest_gap_s));
   if (lidar.gaps > 0) warn(std::format("{} gaps between scans, the longest {:.2f} s", lidar.gaps, lidar.longest_gap_s));
-  if (imu.not_ascending > 0) warn(std::format("{} IMU stamps do not ascend; those samples are dropped", imu.not_ascending));
-  if (lidar.not_ascending > 0) warn(std::format("{} scan stamps do not ascend; those scans are dropped", lidar.not_ascending));
+  if (imu.not_ascending > 0)
+    warn(std::format("{} IMU stamps do not ascend; those samples are dropped", imu.not_ascending));
+  if (lidar.not_ascending > 0)
+    warn(std::format("{} scan stamps do not ascend; those scans are dropped", lidar.not_ascending));
   if (std::abs(imu.delay_median_s - lidar.delay_median_s) > 0.5)
-    warn(std::format("IMU stamps lie {:.2f} s and LiDAR stamps {:.2f} s before the recorder's clock: check that both sensors share one clock",
-                     imu.delay_median_s, lidar.delay_median_s));
+    warn(
+        std::format("IMU stamps lie {:.2f} s and LiDAR stamps {:.2f} s before the recorder's clock: check that both "
+                    "sensors share one clock",
+                    imu.delay_median_s, lidar.delay_median_s));
 }
 
 }  // namespace pllit

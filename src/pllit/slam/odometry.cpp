@@ -115,18 +115,21 @@ Expected<std::optional<Start>> Odometry::try_start() const {
       if (imu.empty() || sample.time > imu.back().time) imu.push_back(sample);
   const double waited_s = to_seconds(waiting_.back().end - waiting_.front().end);
   if (waited_s > 10.0 + config_.start.window_s && imu.size() < 5)
-    return input_error(std::format("{:.0f} s of scans came without IMU data; check the IMU topic and its clock", waited_s));
+    return input_error(
+        std::format("{:.0f} s of scans came without IMU data; check the IMU topic and its clock", waited_s));
   auto start = start_up(imu, rig_.imu, config_.start);
-  if (!start || !*start || (*start)->still || !(*start)->stillness.quiet || config_.start.mode == StartMode::moving) return start;
-  // A quiet gyroscope with a mean rate is at rest and biased, or turns very evenly. Gravity cannot tell which about the vertical, but
-  // the scans can.
+  if (!start || !*start || (*start)->still || !(*start)->stillness.quiet || config_.start.mode == StartMode::moving)
+    return start;
+  // A quiet gyroscope with a mean rate is at rest and biased, or turns very evenly. Gravity cannot tell which about the
+  // vertical, but the scans can.
   StartUpConfig any_bias = config_.start;
   any_bias.still_rate_rps = std::numeric_limits<double>::infinity();
   auto at_rest = start_up(imu, rig_.imu, any_bias);
   return scans_show_no_turn(**at_rest) ? at_rest : start;
 }
 
-/// A trial that takes the rig to be at rest and matches the waiting scans to each other: do they turn as the gyroscope said?
+/// A trial that takes the rig to be at rest and matches the waiting
+/// scans to each other: do they turn as the gyroscope said?
 bool Odometry::scans_show_no_turn(const Start& start) const {
   Odometry trial(rig_, config_);
   trial.begin(start);
@@ -142,8 +145,8 @@ void Odometry::begin(const Start& start) {
   last_match_ = start.estimate.mean.time;
 }
 
-/// A moving start knows no velocity, so its first scans cannot be de-skewed well. A trial odometry matches them to each other, and what
-/// it finds is where the next trial begins, until the velocity stays.
+/// A moving start knows no velocity, so its first scans cannot be de-skewed well. A trial odometry matches them to each
+/// other, and what it finds is where the next trial begins, until the velocity stays.
 Start Odometry::with_settled_velocity(Start start) const {
   constexpr std::size_t packets = 4;
   constexpr int trials = 6;
@@ -165,7 +168,8 @@ Start Odometry::with_settled_velocity(Start start) const {
     start.estimate.mean.v_W += change;
     if (change.norm() < settled_mps) break;
   }
-  start.estimate.covariance.block<3, 3>(ix::v, ix::v) = posterior + settled_sigma_mps * settled_sigma_mps * Matrix3d::Identity();
+  start.estimate.covariance.block<3, 3>(ix::v, ix::v) =
+      posterior + settled_sigma_mps * settled_sigma_mps * Matrix3d::Identity();
   return start;
 }
 

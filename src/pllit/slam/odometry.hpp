@@ -30,8 +30,8 @@ class Odometry {
  public:
   Odometry(const Rig& rig, const Config& config);
 
-  /// Takes the next packet. Returns the frames that are now known: none while starting up, all of them once started, then one a
-  /// packet. An error where no start is possible.
+  /// Takes the next packet. Returns the frames that are now known: none while starting up, all of them once started,
+  /// then one a packet. An error where no start is possible.
   Expected<std::vector<FrameEstimate>> process(SensorPacket packet);
 
   /// How it started, once it has.
@@ -61,7 +61,8 @@ class Odometry {
   int unmatched_ = 0;  ///< scans in a row
 };
 
-/// Covariance of the pose of `b` seen from `a` (theta, p in W, about a's position): what the map walked between them and the two matches.
+/// Covariance of the pose of `b` seen from `a` (theta, p in W, about a's position): what the map walked between them
+/// and the two matches.
 Matrix6 relative_pose_covariance(const FrameEstimate& a, const FrameEstimate& b);
 
 }  // namespace pllit

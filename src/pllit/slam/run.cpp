@@ -53,8 +53,10 @@ class Run {
 
   Expected<void> never_started() const {
     if (packets_ == 0) return input_error("no scan with points came; check the LiDAR topic with `pllit doctor`");
-    return input_error(std::format("the recording ended before the odometry could start ({} scans); it needs more than a second of "
-                                   "scans with IMU data", packets_));
+    return input_error(
+        std::format("the recording ended before the odometry could start ({} scans); it needs more than a second of "
+                    "scans with IMU data",
+                    packets_));
   }
 
   Expected<void> take(FrameEstimate& frame) {
@@ -112,7 +114,8 @@ bool RunSummary::was_degraded() const {
   return count(HealthState::lost) > 0 || final_state != HealthState::good || 10 * count(HealthState::degraded) > frames;
 }
 
-Expected<void> run_odometry(EventSource& source, const Rig& rig, const Config& config, const RunHooks& hooks, RunSummary& summary) {
+Expected<void> run_odometry(EventSource& source, const Rig& rig, const Config& config, const RunHooks& hooks,
+                            RunSummary& summary) {
   const auto begin = std::chrono::steady_clock::now();
   Run run(source, rig, config, hooks, summary);
   const auto result = run.to_the_end();

@@ -24,7 +24,7 @@ struct RunSummary {
   std::array<Distribution, stage_names.size()> stage_ms;
   std::array<int, 4> health{};  ///< frames in each HealthState
   HealthState final_state = HealthState::initialising;
-  std::vector<std::string> notes;   ///< what was noticed, each once
+  std::vector<std::string> notes;  ///< what was noticed, each once
   std::optional<Start> start;
   bool interrupted = false;
 
@@ -40,8 +40,9 @@ struct RunHooks {
   std::stop_token stop = {};                             ///< ends the run after the frame in hand, as if the data ended
 };
 
-/// Runs to the end of the source. Errors: no start possible, the sink's, or the source's with what came before it delivered.
-/// In every case `summary` tells what was done.
-Expected<void> run_odometry(EventSource& source, const Rig& rig, const Config& config, const RunHooks& hooks, RunSummary& summary);
+/// Runs to the end of the source. Errors: no start possible, the sink's, or the source's with what came before it
+/// delivered. In every case `summary` tells what was done.
+Expected<void> run_odometry(EventSource& source, const Rig& rig, const Config& config, const RunHooks& hooks,
+                            RunSummary& summary);
 
 }  // namespace pllit

@@ -8,8 +8,8 @@
 namespace pllit {
 
 enum class Stage { read, propagate, deskew, lidar, photometric, features, track, thermal, map, loop };
-inline constexpr std::array<std::string_view, 10> stage_names{"read",     "propagate", "deskew",  "lidar", "photometric",
-                                                              "features", "track",     "thermal", "map",   "loop"};
+inline constexpr std::array<std::string_view, 10> stage_names{
+    "read", "propagate", "deskew", "lidar", "photometric", "features", "track", "thermal", "map", "loop"};
 using StageTimes = std::array<double, stage_names.size()>;  ///< ms
 
 /// Charges the time since the last call to a stage.

@@ -39,7 +39,8 @@ struct Misfit {
   int count = 0;
 };
 
-/// Mean squared difference of the two rates at an offset; a constant difference is the gyroscope's bias and does not count.
+/// Mean squared difference of the two rates at an offset; a
+/// constant difference is the gyroscope's bias and does not count.
 Misfit misfit_at(double offset_s, const TurnedAngle& gyro, std::span<const LidarRotation> rotations) {
   const Duration offset = from_seconds(offset_s);
   std::vector<Vector3d> differences;
@@ -86,13 +87,14 @@ std::optional<Vector3d> rate_around(Time time, std::span<const LidarRotation> ro
 /// LiDAR-only odometry: constant velocity and rate from scan to scan, as no IMU may have a say.
 class LidarOdometry {
  public:
-  LidarOdometry(const Rig& rig, const Config& config) : rig_(rig), config_(config), map_(config.map), arena_(config.threads) {
+  LidarOdometry(const Rig& rig, const Config& config)
+      : rig_(rig), config_(config), map_(config.map), arena_(config.threads) {
     estimate_.covariance.diagonal().setConstant(1e-6);
   }
 
-  /// The rotation since the scan before, where both were matched. A scan tells the mean pose of its sweep, so it is one from the middle
-  /// of a sweep to the middle of the next.
-  /// `known_rate`: of the sweep, from an earlier pass; else the last one is taken.
+  /// The rotation since the scan before, where both were matched. A scan tells the mean pose of its sweep, so it is one
+  /// from the middle of a sweep to the middle of the next. `known_rate`: of the sweep, from an earlier pass; else the
+  /// last one is taken.
   std::optional<LidarRotation> add(const LidarScan& scan, const std::optional<Vector3d>& known_rate) {
     if (known_rate) rate_I_ = *known_rate;
     const bool first = map_.voxels() == 0;
@@ -123,8 +125,12 @@ class LidarOdometry {
   }
 
   PointCloud deskewed(const LidarScan& scan) const {
-    PathNode node{.time = scan.start, .R_W_I = SO3::Identity(), .p_W = Vector3d::Zero(), .v_W = estimate_.mean.R_W_I.inverse().act(estimate_.mean.v_W),
-                  .omega_I = rate_I_, .accel_W = Vector3d::Zero()};
+    PathNode node{.time = scan.start,
+                  .R_W_I = SO3::Identity(),
+                  .p_W = Vector3d::Zero(),
+                  .v_W = estimate_.mean.R_W_I.inverse().act(estimate_.mean.v_W),
+                  .omega_I = rate_I_,
+                  .accel_W = Vector3d::Zero()};
     PathNode end = node;
     const SE3 T_start_end = extrapolate(node, to_seconds(scan.end() - scan.start));
     end.time = scan.end();
@@ -136,7 +142,9 @@ class LidarOdometry {
   bool match(const PointCloud& cloud) {
     const PointCloud points = thin(cloud, static_cast<std::size_t>(config_.scan.max_matched));
     PlaneResiduals residuals(points, map_, rig_, estimate_.covariance.topLeftCorner<6, 6>(), config_.planes, arena_);
-    const auto linearize = [&](const NavState& x) { return observed_part(residuals(x), x.R_W_I, {}, config_.degeneracy).sums; };
+    const auto linearize = [&](const NavState& x) {
+      return observed_part(residuals(x), x.R_W_I, {}, config_.degeneracy).sums;
+    };
     const UpdateResult update = iterated_update(estimate_, linearize, config_.filter);
     if (!match_accepted(update.last, config_.health)) return false;
     estimate_ = update.posterior;
@@ -172,7 +180,8 @@ std::vector<LidarRotation> lidar_rotations(std::span<const LidarScan> scans, con
   return rotations;
 }
 
-TimeOffset estimate_time_offset(std::span<const ImuSample> imu, std::span<const LidarRotation> rotations, double range_s) {
+TimeOffset estimate_time_offset(std::span<const ImuSample> imu, std::span<const LidarRotation> rotations,
+                                double range_s) {
   constexpr double min_spread_rps = 0.03, step_s = 0.001;
   TimeOffset result;
   if (imu.size() < 10 || rotations.size() < 20) {
@@ -190,7 +199,8 @@ TimeOffset estimate_time_offset(std::span<const ImuSample> imu, std::span<const 
   const auto best = std::ranges::min_element(misfits, {}, &Misfit::mean_square);
   const auto index = static_cast<int>(best - misfits.begin());
   if (best->count < 20 || index == 0 || index == 2 * steps) {
-    result.reason = std::format("no agreement between gyroscope and LiDAR within {:.1f} s; check clocks and rig.lidar.T_I_L", range_s);
+    result.reason = std::format(
+        "no agreement between gyroscope and LiDAR within {:.1f} s; check clocks and rig.lidar.T_I_L", range_s);
     return result;
   }
   // The lowest point of the parabola through the best offset and its neighbours.

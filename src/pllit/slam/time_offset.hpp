@@ -12,8 +12,8 @@ namespace pllit {
 
 /// Rotation of the rig from one scan to the next, in I, as the LiDAR alone sees it.
 struct LidarRotation {
-  Time from, to;      ///< middles of the two sweeps, LiDAR clock
-  Vector3d angle_I;   ///< rad
+  Time from, to;     ///< middles of the two sweeps, LiDAR clock
+  Vector3d angle_I;  ///< rad
 };
 
 /// Matches each scan to those before it without any IMU data. Scans that do not match are left out.
@@ -27,6 +27,7 @@ struct TimeOffset {
 };
 
 /// The offset at which the gyroscope's mean rate between two scans agrees best with the LiDAR's, within +-`range_s`.
-TimeOffset estimate_time_offset(std::span<const ImuSample> imu, std::span<const LidarRotation> rotations, double range_s = 0.5);
+TimeOffset estimate_time_offset(std::span<const ImuSample> imu, std::span<const LidarRotation> rotations,
+                                double range_s = 0.5);
 
 }  // namespace pllit

@@ -15,8 +15,8 @@ Matrix18 on_rotation(const Matrix3d& block) {
   return m;
 }
 
-/// Covariance after a gain that leaves the unobserved directions alone (Schmidt 1966; Joseph's form, valid for any gain).
-/// `optimal`: covariance after the full gain K = optimal H' R^-1, so that K R K' = optimal (H'R^-1 H) optimal.
+/// Covariance after a gain that leaves the unobserved directions alone (Schmidt 1966; Joseph's form, valid for any
+/// gain). `optimal`: covariance after the full gain K = optimal H' R^-1, so that K R K' = optimal (H'R^-1 H) optimal.
 Matrix18 after_partial_gain(const Matrix18& prior, const Matrix18& optimal, const NormalEquations& sums) {
   const Matrix18 observed = Matrix18::Identity() - sums.unobserved * sums.unobserved.transpose();
   const Matrix18 kept = Matrix18::Identity() - observed * optimal * sums.H;

@@ -23,9 +23,9 @@ struct UpdateResult {
   bool converged = false;
 };
 
-/// Minimises |x [-] prior|^2 in the prior's metric plus the sensor's cost. The prior is re-projected to the tangent space of each
-/// iterate (the right Jacobian of the rotation), and the covariance to that of the result. Directions that the sensor calls
-/// unobserved get no gain. A sensor without residuals returns the prior.
+/// Minimises |x [-] prior|^2 in the prior's metric plus the sensor's cost. The prior is re-projected to the tangent
+/// space of each iterate (the right Jacobian of the rotation), and the covariance to that of the result. Directions
+/// that the sensor calls unobserved get no gain. A sensor without residuals returns the prior.
 UpdateResult iterated_update(const Estimate& prior, const Linearize& linearize, const FilterConfig& config);
 
 }  // namespace pllit

@@ -10,12 +10,12 @@ namespace pllit {
 struct NormalEquations {
   Matrix18 H = Matrix18::Zero();
   Vector18 b = Vector18::Zero();
-  double cost = 0.0;       ///< sum of robust squared, whitened residuals
-  double squared_m2 = 0.0; ///< sum of squared residuals of the inliers, not whitened
-  int candidates = 0;      ///< residuals that were tried
-  int inliers = 0;         ///< residuals that count
-  /// Directions of the error state (orthonormal columns) that the sensor does not observe: an update leaves them, mean and
-  /// covariance, to the prior, although noise in H may say something about them.
+  double cost = 0.0;        ///< sum of robust squared, whitened residuals
+  double squared_m2 = 0.0;  ///< sum of squared residuals of the inliers, not whitened
+  int candidates = 0;       ///< residuals that were tried
+  int inliers = 0;          ///< residuals that count
+  /// Directions of the error state (orthonormal columns) that the sensor does not observe: an update leaves them, mean
+  /// and covariance, to the prior, although noise in H may say something about them.
   Eigen::Matrix<double, error_index::size, Eigen::Dynamic> unobserved{error_index::size, 0};
 
   NormalEquations& operator+=(const NormalEquations& other) {

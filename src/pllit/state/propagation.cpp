@@ -178,8 +178,7 @@ ImuStep imu_step(const NavState& state, const Vector3d& gyro_rps, const Vector3d
 }
 
 SE3 extrapolate(const PathNode& node, double dt_s) {
-  return pose_from(node.R_W_I * exp_so3(node.omega_I * dt_s),
-                   node.p_W + (node.v_W + 0.5 * node.accel_W * dt_s) * dt_s);
+  return pose_from(node.R_W_I * exp_so3(node.omega_I * dt_s), node.p_W + (node.v_W + 0.5 * node.accel_W * dt_s) * dt_s);
 }
 
 SE3 MotionPath::pose_at(Time time) const {

@@ -41,11 +41,12 @@ struct MotionPath {
 /// Where a node's motion leads after dt (which may be negative).
 SE3 extrapolate(const PathNode& node, double dt_s);
 
-/// What a scan measures. Its points are taken all along a sweep and brought to its end by the predicted motion, with that motion's errors:
-/// matched together they tell the mean pose error of the sweep (seen from its end), not the one at its end. Noise of the IMU during the
-/// sweep is in both, which a filter that takes one for the other counts as new information.
+/// What a scan measures. Its points are taken all along a sweep and brought to its end by the
+/// predicted motion, with that motion's errors: matched together they tell the mean pose error
+/// of the sweep (seen from its end), not the one at its end. Noise of the IMU during the sweep
+/// is in both, which a filter that takes one for the other counts as new information.
 struct SweepPrediction {
-  Estimate estimate;                    ///< the predicted end, its pose error replaced by the mean over the sweep
+  Estimate estimate;                     ///< the predicted end, its pose error replaced by the mean over the sweep
   Matrix18 with_end = Matrix18::Zero();  ///< covariance of the error at the end (rows) with the estimate's (columns)
 };
 
@@ -56,23 +57,24 @@ struct Propagation {
   Duration longest_gap;   ///< longest stretch without an IMU sample
 };
 
-/// What to assume of the motion where IMU samples are missing for longer than `max_gap`: that the rig goes on as it was,
-/// to within these random accelerations and rates.
+/// What to assume of the motion where IMU samples are missing for longer than `max_gap`: that the rig goes on as it
+/// was, to within these random accelerations and rates.
 struct GapModel {
   Duration max_gap = std::chrono::milliseconds(250);
   double accel_sigma_mps2 = 3.0;
   double rate_sigma_rps = 0.5;
 };
 
-/// Propagates `from` to `until`. `imu` ascends in time, in SI units; the last sample at or before from.time and the first one
-/// at or after `until` should be among them (values between samples are interpolated linearly, and held where a side is
-/// missing). Noise densities are discretised by the length of each step, so any sample rate serves. A sweep goes evenly from
-/// `sweep_begin` (or from.time, where that is later) to `until`; without one it is the instant `until`.
+/// Propagates `from` to `until`. `imu` ascends in time, in SI units; the last sample at or before
+/// from.time and the first one at or after `until` should be among them (values between samples
+/// are interpolated linearly, and held where a side is missing). Noise densities are discretised
+/// by the length of each step, so any sample rate serves. A sweep goes evenly from `sweep_begin`
+/// (or from.time, where that is later) to `until`; without one it is the instant `until`.
 Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time until, const ImuNoise& noise,
                       const GapModel& gaps = {}, std::optional<Time> sweep_begin = std::nullopt);
 
-/// The estimate at the end of a sweep, given what has been learnt of the sweep: as a smoother carries news from one state to another
-/// that is correlated with it (Rauch, Tung and Striebel 1965).
+/// The estimate at the end of a sweep, given what has been learnt of the sweep: as a smoother carries news from one
+/// state to another that is correlated with it (Rauch, Tung and Striebel 1965).
 Estimate at_end(const SweepPrediction& sweep, const Estimate& end, const Estimate& posterior);
 
 }  // namespace pllit

@@ -100,8 +100,9 @@ Estimate initial_estimate(std::span<const ImuSample> imu, const Stillness& still
   const auto square = [](double x) { return x * x; };
   const double ba = square(noise.accel_bias_sigma);
   const double accel = still ? square(noise.accel_density) / length_s : square(config.moving_accel_mps2);
-  const double bg = still ? square(noise.gyro_density) / length_s + square(noise.gyro_bias_walk) * length_s + square(5e-5)
-                          : square(noise.gyro_bias_sigma);
+  const double bg = still
+                        ? square(noise.gyro_density) / length_s + square(noise.gyro_bias_walk) * length_s + square(5e-5)
+                        : square(noise.gyro_bias_sigma);
   const double v = still ? square(0.01) : square(config.moving_speed_mps);
   Vector18 variances;
   variances << Vector6::Constant(square(definition)), Vector3d::Constant(v), Vector3d::Constant(bg),
@@ -129,10 +130,11 @@ Expected<AccelUnit> accel_unit_of(std::span<const ImuSample> imu, AccelUnit conf
   const double length = mean_accel_in_first_frame(imu).norm();
   if (length > 0.8 && length < 1.2) return AccelUnit::g;
   if (length > 8.0 && length < 11.5) return AccelUnit::mps2;
-  return input_error(std::format(
-      "the accelerometer's mean over the first {:.1f} s is {:.3f}, which is neither about 1 (g) nor about 9.8 (m/s2); set "
-      "input.accel_unit to g or m_s2, or start the recording where the rig is not accelerating",
-      span_s(imu), length));
+  return input_error(
+      std::format("the accelerometer's mean over the first {:.1f} s is {:.3f}, which is neither about 1 (g) nor about "
+                  "9.8 (m/s2); set "
+                  "input.accel_unit to g or m_s2, or start the recording where the rig is not accelerating",
+                  span_s(imu), length));
 }
 
 Stillness measure_stillness(std::span<const ImuSample> imu, const StartUpConfig& config) {
@@ -171,8 +173,9 @@ Expected<std::optional<Start>> start_up(std::span<const ImuSample> imu, const Im
   for (ImuSample& sample : si) sample.accel_mps2 *= mps2_per(*unit);
   Stillness stillness = measure_stillness(si, config);
   if (config.mode == StartMode::still && !stillness.still)
-    return input_error(std::format("start.mode is still, but the rig moves in the first {:.1f} s ({}); set start.mode to auto",
-                                   span_s(imu), describe(stillness)));
+    return input_error(
+        std::format("start.mode is still, but the rig moves in the first {:.1f} s ({}); set start.mode to auto",
+                    span_s(imu), describe(stillness)));
   if (config.mode == StartMode::moving) stillness.still = false;
 
   Start start;

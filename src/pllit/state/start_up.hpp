@@ -35,11 +35,11 @@ struct Stillness {
   Vector3d mean_rate_rps, mean_accel_mps2;
   double gyro_spread_rps = 0.0, accel_spread_mps2 = 0.0;  ///< largest standard deviation of an axis
   double slow_spread_rps = 0.0;                           ///< likewise, of the means over tenths of the stretch
-  bool quiet = false;                  ///< small spread: at rest, or turning very evenly
+  bool quiet = false;                                     ///< small spread: at rest, or turning very evenly
   bool gravity_confirms_bias = false;  ///< a mean rate that the direction of gravity does not follow is a bias
 };
-/// The state at the first sample's time, with what is known of it. W has z up and its x axis along the IMU's; position and
-/// attitude are exact by definition (they define W), so the doubt about the vertical stands with gravity and the
+/// The state at the first sample's time, with what is known of it. W has z up and its x axis along the IMU's; position
+/// and attitude are exact by definition (they define W), so the doubt about the vertical stands with gravity and the
 /// accelerometer bias, jointly.
 struct Start {
   Estimate estimate;
@@ -54,12 +54,13 @@ Expected<AccelUnit> accel_unit_of(std::span<const ImuSample> imu, AccelUnit conf
 /// Factor that turns the unit into m/s2.
 double mps2_per(AccelUnit unit);
 
-/// `imu` in m/s2 and rad/s. Still means small spread and small mean rate, or a rate that gravity shows to be a bias: about
-/// the vertical gravity shows nothing, so there only a small rate will do.
+/// `imu` in m/s2 and rad/s. Still means small spread and small mean rate, or a rate that gravity shows to be a bias:
+/// about the vertical gravity shows nothing, so there only a small rate will do.
 Stillness measure_stillness(std::span<const ImuSample> imu, const StartUpConfig& config);
 
 /// The start from IMU data as recorded; nothing while more data is needed; an error where no start is possible (unit
 /// unknown, or not still though configured to be).
-Expected<std::optional<Start>> start_up(std::span<const ImuSample> imu, const ImuNoise& noise, const StartUpConfig& config);
+Expected<std::optional<Start>> start_up(std::span<const ImuSample> imu, const ImuNoise& noise,
+                                        const StartUpConfig& config);
 
 }  // namespace pllit

@@ -30,7 +30,7 @@ float radiance_ahead(const TestPlace& place) {
   const std::array rays{kAhead};
   const std::array hits{caster.cast(kAhead)};
   std::array<float, 1> radiance{};
-  heat.shade(caster, rays, hits, radiance);
+  heat.shade(caster, rays, hits, 1, radiance);
   return radiance[0];
 }
 

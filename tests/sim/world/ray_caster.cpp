@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <thread>
 
@@ -188,6 +189,25 @@ TEST(RayCaster, BlockedAgreesWithTheNearestHitOnTheWay) {
   }
   EXPECT_GT(blocked, 100);
   EXPECT_LT(blocked, 900);
+}
+
+TEST(RayCaster, ManyRaysAreBlockedAsEachAloneWouldBe) {
+  const ReadyPlace place = random_place(3, Vector3d::Zero());
+  RayCaster caster(place, kReach_m);
+  caster.move_to(Vector3d::Zero(), 3.0);
+  Random random(4);
+  constexpr double length_m = 15.0;
+  std::vector<Ray> rays;
+  for (int i = 0; i < 501; ++i)
+    rays.push_back(
+        {.origin_W = {random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0), 0.5 + 3.0 * random.uniform()},
+         .direction_W = random.gaussian3().normalized()});
+  std::vector<std::uint8_t> blocked(rays.size());
+  caster.blocked(rays, length_m, blocked);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    EXPECT_EQ(blocked[i] != 0, caster.blocked(rays[i].origin_W, rays[i].origin_W + length_m * rays[i].direction_W));
+  EXPECT_GT(std::ranges::count(blocked, 1), 50);
+  EXPECT_GT(std::ranges::count(blocked, 0), 50);
 }
 
 TEST(RayCaster, AWallSeenFromItsOwnSurfaceDoesNotBlock) {

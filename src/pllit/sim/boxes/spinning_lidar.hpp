@@ -5,8 +5,8 @@
 
 #include "pllit/sensor/measurements.hpp"
 #include "pllit/sensor/rig.hpp"
-#include "pllit/sim/motion/motion.hpp"
 #include "pllit/sim/boxes/planes_world.hpp"
+#include "pllit/sim/motion/motion.hpp"
 #include "pllit/sim/random.hpp"
 
 namespace pllit {

@@ -1,6 +1,7 @@
 #include "pllit/sim/camera/expose.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pllit/sim/random.hpp"
@@ -9,7 +10,7 @@ namespace pllit {
 namespace {
 
 constexpr int kMoments = 64;
-constexpr int kBlockColumns = 16, kBlockRows = 4;
+constexpr int kBlockColumns = 32, kBlockRows = 4;
 
 void add(ExposurePoses& poses, const SE3& T_W_C) {
   poses.R_W_C.push_back(T_W_C.rotation());
@@ -23,7 +24,8 @@ struct Job {
   const RayTable& table;
   const RayCaster& caster;
   const ExposurePoses& poses;
-  std::span<const Vector3d> pattern;  ///< right, down and moment of each sample of a pixel, before its turn
+  std::span<const Vector3d> first, more;  ///< right, down and moment of each sample of a pixel, before its turn
+  float spread;
   const Shade& shade;
   Vector3d phase;  ///< of this image
 };
@@ -46,43 +48,93 @@ std::vector<Vector3d> sample_pattern(int samples) {
   return pattern;
 }
 
-Ray sample_ray(const Job& job, const Vector3d& phase, int column, int row, std::size_t index) {
-  const Vector3d place = job.pattern[index] + phase;
+/// place: right, down and moment, modulo 1.
+Ray sample_ray(const Job& job, const Vector3d& place, int column, int row) {
   const std::size_t poses = job.poses.p_W.size();
   const auto pose = std::min(static_cast<std::size_t>(fraction(place.z()) * static_cast<float>(poses)), poses - 1);
   const Vector3f ray_C = job.table.at(column, row, fraction(place.x()), fraction(place.y()));
   return {job.poses.p_W[pose], job.poses.R_W_C[pose] * ray_C.cast<double>()};
 }
 
+struct Pixel {
+  int column, row;
+};
+
 /// Buffers of one block, used again for the next.
 struct Buffers {
+  std::vector<Pixel> pixels;
   std::vector<Ray> rays;
   std::vector<Hit> hits;
   std::vector<float> values;
 };
 
-void expose_block(const Job& job, int left, int top, int right, int bottom, Buffers& buffers, cv::Mat& image) {
+/// Of the first samples of each pixel, CV_32FC1.
+struct First {
+  explicit First(cv::Size size) : mean(size, CV_32FC1), least(size, CV_32FC1), most(size, CV_32FC1) {}
+  cv::Mat mean, least, most;
+};
+
+/// Values of the pattern's samples, pixel by pixel.
+void sample(const Job& job, std::span<const Pixel> pixels, std::span<const Vector3d> pattern, Buffers& buffers) {
   // Turns the pattern from pixel to pixel such that neighbours complement each other in all three dimensions.
   const Vector3d per_column(0.7548776662, 0.3247179572, 0.1458980338),
       per_row(0.5698402910, 0.2451223338, 0.8191725134);
-  const std::size_t samples = job.pattern.size();
   buffers.rays.clear();
-  for (int row = top; row < bottom; ++row)
-    for (int column = left; column < right; ++column)
-      for (std::size_t i = 0; i < samples; ++i)
-        buffers.rays.push_back(sample_ray(job, job.phase + column * per_column + row * per_row, column, row, i));
+  for (const auto& [column, row] : pixels) {
+    const Vector3d phase = job.phase + column * per_column + row * per_row;
+    for (const Vector3d& place : pattern) buffers.rays.push_back(sample_ray(job, place + phase, column, row));
+  }
   buffers.hits.resize(buffers.rays.size());
-  buffers.values.resize(samples);
+  buffers.values.resize(buffers.rays.size());
   job.caster.cast(buffers.rays, buffers.hits);
-  std::size_t first = 0;
-  for (int row = top; row < bottom; ++row) {
-    for (int column = left; column < right; ++column, first += samples) {
-      job.shade(std::span(buffers.rays).subspan(first, samples), std::span(buffers.hits).subspan(first, samples),
-                buffers.values);
-      float sum = 0.0F;
-      for (const float value : buffers.values) sum += value;
-      image.at<float>(row, column) = sum / static_cast<float>(samples);
+  job.shade(buffers.rays, buffers.hits, pattern.size(), buffers.values);
+}
+
+void expose_block(const Job& job, int left, int top, int right, int bottom, Buffers& buffers, First& image) {
+  buffers.pixels.clear();
+  for (int row = top; row < bottom; ++row)
+    for (int column = left; column < right; ++column) buffers.pixels.push_back({column, row});
+  sample(job, buffers.pixels, job.first, buffers);
+  auto value = buffers.values.begin();
+  for (const auto& [column, row] : buffers.pixels) {
+    float sum = 0.0F, least = *value, most = *value;
+    for (std::size_t i = 0; i < job.first.size(); ++i, ++value) {
+      sum += *value;
+      least = std::min(least, *value);
+      most = std::max(most, *value);
     }
+    image.mean.at<float>(row, column) = sum / static_cast<float>(job.first.size());
+    image.least.at<float>(row, column) = least;
+    image.most.at<float>(row, column) = most;
+  }
+}
+
+/// Whether the samples of a pixel and of those beside, above and below it differ.
+bool is_uneven(const First& image, int column, int row, float spread) {
+  const auto at = [](const cv::Mat& of, int x, int y) {
+    return of.at<float>(std::clamp(y, 0, of.rows - 1), std::clamp(x, 0, of.cols - 1));
+  };
+  const auto over_cross = [&](const cv::Mat& of) {
+    return std::array{at(of, column, row), at(of, column - 1, row), at(of, column + 1, row), at(of, column, row - 1),
+                      at(of, column, row + 1)};
+  };
+  return std::ranges::max(over_cross(image.most)) - std::ranges::min(over_cross(image.least)) > spread;
+}
+
+/// Adds more samples to the uneven pixels of some rows.
+void refine(const Job& job, const First& first, int top, int bottom, cv::Mat& image) {
+  Buffers buffers;
+  for (int row = top; row < bottom; ++row)
+    for (int column = 0; column < image.cols; ++column)
+      if (is_uneven(first, column, row, job.spread)) buffers.pixels.push_back({column, row});
+  sample(job, buffers.pixels, job.more, buffers);
+  const float share = static_cast<float>(job.first.size()) / static_cast<float>(job.first.size() + job.more.size());
+  auto value = buffers.values.begin();
+  for (const auto& [column, row] : buffers.pixels) {
+    float sum = 0.0F;
+    for (std::size_t i = 0; i < job.more.size(); ++i) sum += *value++;
+    float& mean = image.at<float>(row, column);
+    mean = share * mean + (1.0F - share) * sum / static_cast<float>(job.more.size());
   }
 }
 
@@ -102,20 +154,26 @@ ExposurePoses fading_memory(const CameraPath& path, Time readout, Duration time_
   return poses;
 }
 
-cv::Mat expose(const RayTable& table, const RayCaster& caster, const ExposurePoses& poses, int samples,
+cv::Mat expose(const RayTable& table, const RayCaster& caster, const ExposurePoses& poses, const Sampling& sampling,
                std::uint64_t seed, const Shade& shade, Arena& arena) {
   Random random(seed);
   const double right = random.uniform(), down = random.uniform(), moment = random.uniform();
-  const std::vector<Vector3d> pattern = sample_pattern(samples);
-  const Job job{table, caster, poses, pattern, shade, {right, down, moment}};
-  cv::Mat image(table.height(), table.width(), CV_32FC1);
-  arena.for_chunks(static_cast<std::size_t>(table.height()), kBlockRows, [&](std::size_t begin, std::size_t end) {
+  const std::vector<Vector3d> first = sample_pattern(sampling.first), more = sample_pattern(sampling.more);
+  const Job job{table, caster, poses, first, more, sampling.spread, shade, {right, down, moment}};
+  First image({table.width(), table.height()});
+  const auto rows = static_cast<std::size_t>(table.height());
+  arena.for_chunks(rows, kBlockRows, [&](std::size_t begin, std::size_t end) {
     Buffers buffers;
     for (int left = 0; left < table.width(); left += kBlockColumns)
       expose_block(job, left, static_cast<int>(begin), std::min(left + kBlockColumns, table.width()),
                    static_cast<int>(end), buffers, image);
   });
-  return image;
+  if (more.empty()) return image.mean;
+  cv::Mat refined = image.mean.clone();
+  arena.for_chunks(rows, kBlockRows, [&](std::size_t begin, std::size_t end) {
+    refine(job, image, static_cast<int>(begin), static_cast<int>(end), refined);
+  });
+  return refined;
 }
 
 }  // namespace pllit

@@ -28,12 +28,20 @@ ExposurePoses open_shutter(const CameraPath& path, Time middle, Duration length)
 /// A bolometer read at `readout`, whose memory fades exponentially: on average it sees one time constant earlier.
 ExposurePoses fading_memory(const CameraPath& path, Time readout, Duration time_constant);
 
-/// Gives the samples of one pixel their values. Called from several threads.
-using Shade = std::function<void(std::span<const Ray>, std::span<const Hit>, std::span<float>)>;
+/// Gives the samples of some pixels their values; those of one pixel stand together, as many as the number says.
+/// Called from several threads.
+using Shade = std::function<void(std::span<const Ray>, std::span<const Hit>, std::size_t samples, std::span<float>)>;
+
+/// How many samples a pixel gets: `first`, and `more` where these differ by more than `spread`, in the unit of Shade,
+/// within it or from those of its neighbours, as on edges and where these move.
+struct Sampling {
+  int first = 2, more = 8;
+  float spread = 0.0F;
+};
 
 /// Mean over the samples of each pixel, CV_32FC1. They are spread over the pixel's area and the poses by
 /// low-discrepancy sequences that depend on the pixel and on `seed` alone.
-cv::Mat expose(const RayTable& table, const RayCaster& caster, const ExposurePoses& poses, int samples,
+cv::Mat expose(const RayTable& table, const RayCaster& caster, const ExposurePoses& poses, const Sampling& sampling,
                std::uint64_t seed, const Shade& shade, Arena& arena);
 
 }  // namespace pllit

@@ -13,6 +13,10 @@ namespace {
 /// Share of the difference between air and sky by which a surface under an open sky stays below the air.
 constexpr float kSkyCooling = 0.12F;
 
+/// Share of what is received below which nothing is sought in a mirror: 10 K more there would show as 0.04 K.
+constexpr float kLeastReflected = 0.004F;
+constexpr int kSkySteps = 256;
+
 double air_change_K(const Climate& climate, double t_s) {
   constexpr double day_s = 86400.0;
   return climate.air_drift_Kph * t_s / 3600.0 + climate.air_swing_K * std::sin(2.0 * std::numbers::pi * t_s / day_s);
@@ -36,6 +40,9 @@ Heat::Heat(const Place& place, const ThermalBand& band, double t_s, float pixel_
   const Climate& climate = place.climate();
   const auto start_K = static_cast<float>(climate.air_K), change_K = static_cast<float>(air_change_K(climate, t_s));
   air_K_ = start_K + change_K;
+  air_radiance_ = band_.radiance(air_K_);
+  for (int i = 0; i <= kSkySteps; ++i)
+    clear_sky_.push_back(band_.radiance(clear_sky_K(static_cast<float>(i) / kSkySteps)));
   for (const Surface& surface : place.surfaces()) {
     const float cooling_K = kSkyCooling * surface.sees_sky * std::max(0.0F, air_K_ - zenith_K_);
     const float base_K = start_K + surface.excess_K + surface.follows_air * change_K - cooling_K;
@@ -65,6 +72,12 @@ float Heat::temperature_K(const Hit& hit, bool in_sun) const {
 /// up: z of the unit direction.
 float Heat::clear_sky_K(float up) const { return zenith_K_ + (air_K_ - zenith_K_) * std::exp(-up / 0.22F); }
 
+float Heat::clear_sky_radiance(float up) const {
+  const float place = std::min(up, 1.0F) * kSkySteps;
+  const std::size_t index = std::min(static_cast<std::size_t>(place), clear_sky_.size() - 2);
+  return clear_sky_[index] + (place - static_cast<float>(index)) * (clear_sky_[index + 1] - clear_sky_[index]);
+}
+
 float Heat::sky_K(const Vector3f& direction_W) const {
   const float up = std::max(0.0F, direction_W.z());
   const float clear_K = clear_sky_K(up);
@@ -74,8 +87,12 @@ float Heat::sky_K(const Vector3f& direction_W) const {
   return clear_K + 0.35F * cloud * (air_K_ - clear_K);
 }
 
+bool Heat::sun_may_warm(const Hit& hit) const {
+  return sun_ > 0.0F && surfaces_[hit.surface].sun_K != 0.0F && hit.normal_W.dot(to_sun_W_) > 0.0F;
+}
+
 bool Heat::in_sun(const RayCaster& caster, const Ray& ray, const Hit& hit) const {
-  if (sun_ <= 0.0F || surfaces_[hit.surface].sun_K == 0.0F || hit.normal_W.dot(to_sun_W_) <= 0.0F) return false;
+  if (!sun_may_warm(hit)) return false;
   constexpr double far_m = 150.0, off_m = 0.01;
   const Vector3d p_W = ray.origin_W + hit.range_m * ray.direction_W + off_m * hit.normal_W.cast<double>();
   return !caster.blocked(p_W, p_W + far_m * to_sun_W_.cast<double>());
@@ -87,43 +104,51 @@ float Heat::emissivity(const Hit& hit, float cos_view) const {
   return surfaces_[hit.surface].emissivity * (1.0F - c * c * c * c * c);
 }
 
-float Heat::emitted_and_reflected(const Hit& hit, const Vector3f& direction_W, bool in_sun, float mirrored) const {
+float Heat::emitted_and_reflected(const Hit& hit, const Vector3f& direction_W, bool in_sun,
+                                  std::optional<float> mirrored) const {
   const Warmth& surface = surfaces_[hit.surface];
   const float cos_view = -direction_W.dot(hit.normal_W);
   const float emits = emissivity(hit, cos_view);
-  float ambient = band_.radiance(air_K_);
+  float ambient = air_radiance_;
   if (surface.sees_sky > 0.0F) {
     // At grazing angles, where it matters, what is reflected comes from near the mirrored ray.
     const float up = std::max(0.0F, direction_W.z() + 2.0F * cos_view * hit.normal_W.z());
-    ambient = std::lerp(ambient, band_.radiance(clear_sky_K(up)), surface.sees_sky);
+    ambient += surface.sees_sky * (clear_sky_radiance(up) - ambient);
   }
-  return emits * band_.radiance(temperature_K(hit, in_sun)) +
-         (1.0F - emits) * std::lerp(ambient, mirrored, surface.mirror);
+  if (mirrored) ambient += surface.mirror * (*mirrored - ambient);
+  return emits * band_.radiance(temperature_K(hit, in_sun)) + (1.0F - emits) * ambient;
 }
 
-void Heat::shade(const RayCaster& caster, std::span<const Ray> rays, std::span<const Hit> hits,
+float Heat::mirrored_radiance(const Patches::Mirrored& mirrored) const {
+  return mirrored.hit ? band_.radiance(temperature_K(mirrored.hit, false))
+                      : band_.radiance(sky_K(mirrored.ray.direction_W.cast<float>()));
+}
+
+void Heat::shade(const RayCaster& caster, std::span<const Ray> rays, std::span<const Hit> hits, std::size_t samples,
                  std::span<float> radiance) const {
-  std::uint32_t known = Hit::kStatic;  // the surface that the two below were found for
-  bool lit = false;
-  float mirrored = 0.0F;
+  Patches patches(rays, hits, samples);
+  if (sun_ > 0.0F) patches.seek_sun(caster, to_sun_W_, [&](const Ray&, const Hit& hit) { return sun_may_warm(hit); });
+  patches.seek_mirrored(caster, [&](const Ray& ray, const Hit& hit) {
+    const Warmth& surface = surfaces_[hit.surface];
+    if (surface.mirror < kLeastMirror) return false;
+    return (1.0F - emissivity(hit, -ray.direction_W.cast<float>().dot(hit.normal_W))) * surface.mirror >
+           kLeastReflected;
+  });
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Hit& hit = hits[i];
+    const bool smooth = !hit || is_smooth(surfaces_[hit.surface].texture);
+    if (smooth && patches.first(i) != i) {
+      radiance[i] = radiance[patches.first(i)];
+      continue;
+    }
     const Vector3f direction_W = rays[i].direction_W.cast<float>();
     if (!hit) {
       radiance[i] = band_.radiance(sky_K(direction_W));
       continue;
     }
-    if (hit.surface != known) {
-      known = hit.surface;
-      lit = in_sun(caster, rays[i], hit);
-      if (surfaces_[known].mirror > 0.0F) {
-        const Ray second = mirrored_ray(rays[i], hit);
-        const Hit seen = caster.cast(second);
-        mirrored =
-            seen ? band_.radiance(temperature_K(seen, false)) : band_.radiance(sky_K(second.direction_W.cast<float>()));
-      }
-    }
-    radiance[i] = emitted_and_reflected(hit, direction_W, lit, mirrored);
+    const Patches::Mirrored* mirrored = patches.mirrored(i);
+    radiance[i] = emitted_and_reflected(hit, direction_W, patches.in_sun(i),
+                                        mirrored ? std::optional(mirrored_radiance(*mirrored)) : std::nullopt);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pllit/sim/camera/own_frame.hpp"
+#include "pllit/sim/camera/patches.hpp"
 #include "pllit/sim/camera/texture.hpp"
 
 namespace pllit {
@@ -15,13 +16,6 @@ Illumination::Illumination(const Place& place, double t_s, float pixel_rad)
       ambient_(static_cast<float>(place.climate().ambient_light)),
       to_sun_W_(place.climate().to_sun_W.cast<float>()) {
   for (const Actor& actor : place.actors()) R_O_W_.push_back(rotation_to_own(actor, t_s));
-}
-
-bool Illumination::in_sun(const RayCaster& caster, const Ray& ray, const Hit& hit) const {
-  if (sun_ <= 0.0F || hit.normal_W.dot(to_sun_W_) <= 0.0F) return false;
-  constexpr double far_m = 150.0, off_m = 0.01;
-  const Vector3d p_W = ray.origin_W + hit.range_m * ray.direction_W + off_m * hit.normal_W.cast<double>();
-  return !caster.blocked(p_W, p_W + far_m * to_sun_W_.cast<double>());
 }
 
 float Illumination::sky(const Vector3f& direction_W) const {
@@ -46,27 +40,29 @@ float Illumination::reflected_and_glow(const Hit& hit, bool in_sun) const {
 }
 
 void Illumination::shade(const RayCaster& caster, std::span<const Ray> rays, std::span<const Hit> hits,
-                         std::span<float> brightness) const {
-  std::uint32_t known = Hit::kStatic;  // the surface that the two below were found for
-  bool lit = false;
-  float mirrored = 0.0F;
+                         std::size_t samples, std::span<float> brightness) const {
+  Patches patches(rays, hits, samples);
+  if (sun_ > 0.0F)
+    patches.seek_sun(caster, to_sun_W_, [&](const Ray&, const Hit& hit) { return hit.normal_W.dot(to_sun_W_) > 0.0F; });
+  patches.seek_mirrored(caster,
+                        [&](const Ray&, const Hit& hit) { return (*surfaces_)[hit.surface].mirror >= kLeastMirror; });
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Hit& hit = hits[i];
+    const bool smooth = !hit || is_smooth((*surfaces_)[hit.surface].paint);
+    if (smooth && patches.first(i) != i) {
+      brightness[i] = brightness[patches.first(i)];
+      continue;
+    }
     if (!hit) {
       brightness[i] = sky(rays[i].direction_W.cast<float>());
       continue;
     }
-    const float mirror = (*surfaces_)[hit.surface].mirror;
-    if (hit.surface != known) {
-      known = hit.surface;
-      lit = in_sun(caster, rays[i], hit);
-      if (mirror > 0.0F) {
-        const Ray second = mirrored_ray(rays[i], hit);
-        const Hit seen = caster.cast(second);
-        mirrored = seen ? reflected_and_glow(seen, false) : sky(second.direction_W.cast<float>());
-      }
+    brightness[i] = reflected_and_glow(hit, patches.in_sun(i));
+    if (const Patches::Mirrored* mirrored = patches.mirrored(i)) {
+      const float seen =
+          mirrored->hit ? reflected_and_glow(mirrored->hit, false) : sky(mirrored->ray.direction_W.cast<float>());
+      brightness[i] += (*surfaces_)[hit.surface].mirror * (seen - brightness[i]);
     }
-    brightness[i] = std::lerp(reflected_and_glow(hit, lit), mirrored, mirror);
   }
 }
 

@@ -16,15 +16,14 @@ class Illumination {
   /// outlive it.
   Illumination(const Place& place, double t_s, float pixel_rad);
 
-  /// Brightness of the samples of one pixel. Shadows and mirrored things are sought by one further ray for each surface
-  /// in the pixel.
-  void shade(const RayCaster& caster, std::span<const Ray> rays, std::span<const Hit> hits,
+  /// Brightness of the samples of some pixels, `samples` each. Shadows and mirrored things are sought by one further
+  /// ray for each surface in a pixel, and where its texture is smooth one value stands for its samples.
+  void shade(const RayCaster& caster, std::span<const Ray> rays, std::span<const Hit> hits, std::size_t samples,
              std::span<float> brightness) const;
 
  private:
   float reflected_and_glow(const Hit& hit, bool in_sun) const;
   float sky(const Eigen::Vector3f& direction_W) const;
-  bool in_sun(const RayCaster& caster, const Ray& ray, const Hit& hit) const;
 
   const std::vector<Surface>* surfaces_;
   float pixel_rad_, sun_, ambient_;

@@ -91,10 +91,11 @@ float lattice(const Texture& texture, const Lattice& lattice, const Vector2f& uv
   const bool in_joint = u - column < joint_u || v - row < joint_v;
   const float own =
       lattice.variety * signed_unit(hash(static_cast<int>(column), static_cast<int>(row), 3, texture.seed));
-  const float cell = joints / (1.0F - joints) + own * visibility(lattice.height * texture.scale_m, footprint_m);
+  const float seen = visibility(lattice.height * texture.scale_m, footprint_m);
+  const float cell = joints / (1.0F - joints) + own * seen;
   const float joint_seen = visibility(lattice.joint * texture.scale_m, 0.25F * footprint_m);
-  return std::lerp(own * visibility(lattice.height * texture.scale_m, footprint_m), in_joint ? -1.0F : cell,
-                   joint_seen);
+  const float without_joints = own * seen;
+  return without_joints + joint_seen * ((in_joint ? -1.0F : cell) - without_joints);
 }
 
 float planks(const Texture& texture, const Vector2f& uv_m, float footprint_m) {
@@ -127,8 +128,10 @@ float speckle(const Texture& texture, const Vector3f& p, float footprint_m) {
 float stains(const Texture& texture, const Vector3f& p, float footprint_m) {
   const Vector3f q = p * (2.0F / texture.scale_m);
   const float noise = value_noise(q, texture.seed) + 0.25F * value_noise(q * 3.1F, texture.seed + 1);
+  // The noise changes by about this within a footprint.
+  const float within = 3.0F * footprint_m / texture.scale_m;
   constexpr float threshold = 0.32F, edge = 0.015F;
-  const float inside = std::clamp((std::abs(noise) - threshold) / edge, 0.0F, 1.0F);
+  const float inside = std::clamp((std::abs(noise) - threshold) / std::max(edge, within) + 0.5F, 0.0F, 1.0F);
   return visibility(0.5F * texture.scale_m, footprint_m) * std::copysign(inside, noise);
 }
 

@@ -33,7 +33,7 @@ ThermalBand::ThermalBand() {
 float ThermalBand::radiance(float temperature_K) const {
   const float place = std::clamp(temperature_K, 100.0F, 1499.99F) - static_cast<float>(kLowest_K);
   const auto index = static_cast<std::size_t>(place);
-  return std::lerp(table_[index], table_[index + 1], place - static_cast<float>(index));
+  return table_[index] + (place - static_cast<float>(index)) * (table_[index + 1] - table_[index]);
 }
 
 }  // namespace pllit

@@ -8,6 +8,9 @@
 namespace pllit {
 namespace {
 
+/// Pixels whose samples, or neighbours, differ by more get more samples.
+constexpr float kUneven_K = 0.45F;
+
 std::uint64_t sub_seed(std::uint64_t seed, std::uint64_t stream) { return Random(seed, stream).bits(); }
 
 /// Radiance, CV_32FC1, to counts before noise: what the housing adds towards the corners was measured at the last
@@ -53,9 +56,13 @@ ThermalCamera::ThermalCamera(const ThermalCameraModel& model, const Place& place
 
 cv::Mat ThermalCamera::counts(const RayCaster& caster, const CameraPath& path, Time time, Arena& arena) {
   const Heat heat(*place_, band_, to_seconds(time - start_), rays_.pixel_rad());
+  const Sampling sampling{
+      .first = (model_.samples + 1) / 2, .more = 2 * model_.samples, .spread = kUneven_K * band_.slope(300.0F)};
   const auto poses = fading_memory(path, time, from_seconds(model_.time_constant_s));
-  const Shade shade = [&](auto rays, auto hits, auto radiance) { heat.shade(caster, rays, hits, radiance); };
-  const cv::Mat radiance = expose(rays_, caster, poses, model_.samples, random_.bits(), shade, arena);
+  const Shade shade = [&](auto rays, auto hits, std::size_t samples, auto radiance) {
+    heat.shade(caster, rays, hits, samples, radiance);
+  };
+  const cv::Mat radiance = expose(rays_, caster, poses, sampling, random_.bits(), shade, arena);
   cv::Mat counts = to_counts(blurred(radiance, model_.blur_sigma_px, arena), model_, band_);
   const auto per_K = static_cast<float>(model_.counts_per_K);
   pattern_.add_to(counts, per_K, arena);

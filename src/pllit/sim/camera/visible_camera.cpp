@@ -10,6 +10,9 @@
 namespace pllit {
 namespace {
 
+/// Pixels whose samples, or neighbours, differ by more, in full scales, get more samples.
+constexpr float kUneven = 0.1F;
+
 /// Exposure times gain that would bring the mean to the target, approached with the controller's speed.
 double next_effort_s(double effort_s, double mean, const AutoExposure& exposure) {
   const double wanted = effort_s * std::pow(exposure.target / std::max(mean, 1e-3), exposure.speed);
@@ -63,12 +66,15 @@ VisibleFrame VisibleCamera::capture(const RayCaster& caster, const CameraPath& p
   planned_.pop_front();
   const double exposure_s = std::min(effort_s, model_.exposure.most_s), gain = effort_s / exposure_s;
   const Illumination illumination(*place_, to_seconds(time - start_), rays_.pixel_rad());
-  const Shade shade = [&](auto rays, auto hits, auto brightness) {
-    illumination.shade(caster, rays, hits, brightness);
+  const Shade shade = [&](auto rays, auto hits, std::size_t samples, auto brightness) {
+    illumination.shade(caster, rays, hits, samples, brightness);
   };
+  const auto full_scale = static_cast<float>(model_.full_light_s / effort_s);
+  const Sampling sampling{
+      .first = (model_.samples + 1) / 2, .more = 2 * model_.samples, .spread = kUneven * full_scale};
   const auto poses = open_shutter(path, time, from_seconds(exposure_s));
   cv::Mat image =
-      blurred(expose(rays_, caster, poses, model_.samples, random_.bits(), shade, arena), model_.blur_sigma_px, arena);
+      blurred(expose(rays_, caster, poses, sampling, random_.bits(), shade, arena), model_.blur_sigma_px, arena);
   add_electrons(image, model_, exposure_s, gain, random_.bits(), arena);
   planned_.push_back(next_effort_s(effort_s, cv::mean(image)[0], model_.exposure));
   return {.time = time, .grey = to_grey(image, model_.gamma), .exposure_s = exposure_s, .gain = gain};

@@ -24,13 +24,14 @@ using enum Material;
 // important materials"), rounded: brick 0.93, plaster 0.91, asphalt 0.95, skin 0.98, paint 0.92, stainless steel 0.16
 // to 0.2, rough bare metal 0.1 to 0.3. Everything else is assumed: reflectivities at 905 nm such that foliage is bright
 // while asphalt and tyres are dark, temperatures such that walls vary by tenths of a kelvin and machines exceed the air
-// by tens.
+// by tens. Heat spreads, so that solid walls and floors vary without
+// edges; outdoors, where sun, moisture and wind differ, they vary by about a kelvin.
 constexpr std::array kRows{
     // clang-format off: a table reads by its columns
-    Row{plaster,        "plaster",          .72F, .75F, .91F, 0, 0, .15F, 0, 0, clouds, 1.5F, .05F, stains, .9F, .25F},
-    Row{paint_wall,     "painted wall",     .6F, .55F, .93F, .02F, 0, .15F, 0, 0, stains, .7F, .07F, bricks, .3F, .15F},
+    Row{plaster,        "plaster",          .72F, .75F, .91F, 0, 0, .15F, 0, 0, clouds, 1.5F, .05F, clouds, .9F, .25F},
+    Row{paint_wall,     "painted wall",     .6F, .55F, .93F, .02F, 0, .15F, 0, 0, clouds, .7F, .06F, bricks, .3F, .15F},
     Row{brick_wall,     "brick wall",       .45F, .4F, .93F, 0, 0, .15F, 0, 0, bricks, .25F, .12F, bricks, .25F, .35F},
-    Row{concrete,       "concrete",         .42F, .45F, .94F, 0, -.3F, .1F, 0, 0, stains, 1.2F, .1F, stains, 1.6F, .35F},
+    Row{concrete,       "concrete",         .42F, .45F, .94F, 0, -.3F, .1F, 0, 0, stains, 1.2F, .03F, clouds, 1.6F, .35F},
     Row{floor_tiles,    "floor tiles",      .5F, .5F, .93F, .05F, -.8F, .1F, 0, 0, tiles, .3F, .08F, tiles, .3F, .12F},
     Row{parquet,        "parquet",          .5F, .35F, .9F, .04F, -.4F, .2F, 0, 0, planks, .9F, .1F, planks, .9F, .12F},
     Row{carpet,         "carpet",           .35F, .25F, .95F, 0, -.3F, .3F, 0, 0, speckle, .02F, .06F, clouds, 2.F, .2F},
@@ -63,26 +64,26 @@ constexpr std::array kRows{
     Row{skin,           "skin",             .55F, .5F, .98F, 0, 11.F, .1F, 0, 0, plain, 1.F, 0, clouds, .15F, .8F},
     Row{clothes,        "clothes",          .4F, .3F, .96F, 0, 5.F, .3F, 2.F, .1F, stains, .3F, .1F, stains, .25F, 1.2F},
     Row{screen,         "screen",           .1F, .06F, .92F, .1F, 5.F, .2F, 0, 0, plain, 1.F, 0, clouds, .3F, 1.F},
-    Row{asphalt,        "asphalt",          .14F, .16F, .95F, 0, 1.F, .05F, 16.F, .7F, speckle, .04F, .04F, stains, 1.8F, .5F},
+    Row{asphalt,        "asphalt",          .14F, .16F, .95F, 0, 1.F, .05F, 16.F, .7F, speckle, .04F, .04F, clouds, 1.8F, .8F},
     Row{lane_paint,     "lane paint",       .75F, .75F, .93F, 0, .3F, .05F, 10.F, .7F, stains, .3F, .15F, stains, 1.8F, .4F},
-    Row{pavement,       "pavement",         .35F, .4F, .94F, 0, .5F, .08F, 12.F, .6F, tiles, .4F, .07F, tiles, .8F, .35F},
+    Row{pavement,       "pavement",         .35F, .4F, .94F, 0, .5F, .08F, 12.F, .6F, tiles, .4F, .07F, tiles, .8F, .6F},
     Row{kerb,           "kerb",             .45F, .5F, .94F, 0, .3F, .08F, 9.F, .5F, planks, 1.F, .05F, planks, 1.F, .3F},
-    Row{facade_plaster, "plastered front",  .6F, .6F, .92F, 0, 1.2F, .1F, 9.F, .4F, stains, 2.F, .06F, stains, 1.5F, .5F},
-    Row{facade_brick,   "brick front",      .4F, .35F, .93F, 0, 1.F, .1F, 11.F, .4F, bricks, .25F, .1F, bricks, .25F, .5F},
-    Row{facade_stone,   "stone front",      .5F, .45F, .93F, 0, .8F, .06F, 9.F, .4F, bricks, .9F, .08F, bricks, .9F, .6F},
-    Row{roof_tiles,     "roof tiles",       .35F, .25F, .93F, 0, .5F, .2F, 16.F, .9F, tiles, .3F, .06F, tiles, .3F, .5F},
-    Row{leaves,         "leaves",           .6F, .18F, .97F, 0, -.5F, .8F, 2.F, .5F, speckle, .1F, .08F, clouds, .8F, .5F},
-    Row{bark,           "bark",             .35F, .2F, .95F, 0, .5F, .3F, 6.F, .3F, stains, .2F, .08F, stains, .3F, .5F},
-    Row{grass,          "grass",            .55F, .22F, .97F, 0, -.8F, .6F, 5.F, .8F, clouds, 1.5F, .06F, clouds, 2.5F, .7F},
-    Row{earth,          "earth",            .3F, .25F, .94F, 0, .3F, .2F, 11.F, .8F, stains, 1.F, .08F, stains, 2.F, .7F},
-    Row{car_paint,      "car body",         .45F, .4F, .9F, .15F, 2.F, .6F, 12.F, .5F, clouds, 1.F, .03F, clouds, .8F, .6F},
+    Row{facade_plaster, "plastered front",  .6F, .6F, .92F, 0, 1.2F, .1F, 9.F, .4F, stains, 2.F, .03F, clouds, 1.5F, .9F},
+    Row{facade_brick,   "brick front",      .4F, .35F, .93F, 0, 1.F, .1F, 11.F, .4F, bricks, .25F, .1F, bricks, .25F, .8F},
+    Row{facade_stone,   "stone front",      .5F, .45F, .93F, 0, .8F, .06F, 9.F, .4F, bricks, .9F, .08F, bricks, .9F, .9F},
+    Row{roof_tiles,     "roof tiles",       .35F, .25F, .93F, 0, .5F, .2F, 16.F, .9F, tiles, .3F, .06F, tiles, .3F, .8F},
+    Row{leaves,         "leaves",           .6F, .18F, .97F, 0, -.5F, .8F, 2.F, .5F, speckle, .1F, .08F, clouds, .8F, 1.F},
+    Row{bark,           "bark",             .35F, .2F, .95F, 0, .5F, .3F, 6.F, .3F, stains, .2F, .08F, stains, .3F, .8F},
+    Row{grass,          "grass",            .55F, .22F, .97F, 0, -.8F, .6F, 5.F, .8F, clouds, 1.5F, .06F, clouds, 2.5F, 1.1F},
+    Row{earth,          "earth",            .3F, .25F, .94F, 0, .3F, .2F, 11.F, .8F, stains, 1.F, .08F, stains, 2.F, 1.F},
+    Row{car_paint,      "car body",         .45F, .4F, .9F, .15F, 2.F, .6F, 12.F, .5F, clouds, 1.F, .03F, clouds, .8F, .8F},
     Row{car_glass,      "car window",       .07F, .12F, .88F, .5F, .5F, .6F, 4.F, .4F, plain, 1.F, 0, clouds, .6F, .4F},
     Row{tyre,           "tyre",             .07F, .06F, .95F, 0, 3.F, .3F, 8.F, .2F, plain, 1.F, 0, clouds, .2F, .5F},
     Row{sign_face,      "sign",             1.F, .8F, .9F, .05F, .2F, .7F, 7.F, .4F, tiles, .3F, .2F, plain, 1.F, 0},
     Row{street_metal,   "street furniture", .45F, .4F, .85F, .1F, .2F, .7F, 9.F, .4F, plain, 1.F, 0, clouds, .8F, .4F},
     Row{grating,        "grating",          .4F, .4F, .3F, .3F, .2F, .6F, 4.F, .1F, tiles, .05F, .15F, clouds, .8F, .3F},
     Row{rail_paint,     "railing",          .55F, .5F, .92F, .02F, -.2F, .6F, 5.F, .2F, plain, 1.F, 0, clouds, .6F, .3F},
-    Row{screed,         "concrete floor",   .4F, .42F, .94F, .01F, -.8F, .08F, 0, 0, stains, 1.4F, .1F, stains, 1.8F, .35F},
+    Row{screed,         "concrete floor",   .4F, .42F, .94F, .01F, -.8F, .08F, 0, 0, stains, 1.4F, .05F, clouds, 1.8F, .35F},
     // clang-format on
 };
 

@@ -17,16 +17,16 @@ struct Tile {
 /// Light, air and weather, the same everywhere in a place.
 struct Climate {
   double air_K = 293.15;
-  double air_drift_Kph = 0.0;                             ///< K per hour, steady
-  double air_swing_K = 0.0;                               ///< amplitude of a swing over a day
-  double sky_K = 263.15;                                  ///< effective temperature of the zenith in the thermal band
-  Eigen::Vector3d to_sun_W = Eigen::Vector3d::UnitZ();    ///< unit
-  double sun = 0.0;                                       ///< direct light, 0 (night, indoors) to 1
-  double ambient_light = 0.6;                             ///< light from everywhere, 0 (dark) to 1
+  double air_drift_Kph = 0.0;                           ///< K per hour, steady
+  double air_swing_K = 0.0;                             ///< amplitude of a swing over a day
+  double sky_K = 263.15;                                ///< effective temperature of the zenith in the thermal band
+  Eigen::Vector3d to_sun_W = Eigen::Vector3d::UnitZ();  ///< unit
+  double sun = 0.0;                                     ///< direct light, 0 (night, indoors) to 1
+  double ambient_light = 0.6;                           ///< light from everywhere, 0 (dark) to 1
 };
 
-/// Made from a seed around a motion, so that the motion never meets a wall. The same arguments give the same place; a tile depends
-/// on the place and its index alone, whatever was made before.
+/// Made from a seed around a motion, so that the motion never meets a wall. The same arguments give the same place; a
+/// tile depends on the place and its index alone, whatever was made before.
 class Place {
  public:
   virtual ~Place() = default;

@@ -9,6 +9,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace pllit {
 namespace {
@@ -54,6 +55,7 @@ Owned<RTCScene> new_scene(RTCDevice device) {
 /// A scene of one mesh in the mesh's own frame.
 Owned<RTCScene> scene_of(RTCDevice device, const Mesh& mesh) {
   Owned<RTCScene> scene = new_scene(device);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);  // rays run faster; meshes are built but once
   const Owned<RTCGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
   if (!mesh.triangles.empty()) {
     using Vertex = std::array<float, 3>;
@@ -97,9 +99,9 @@ Part part_of(RTCDevice device, const Mesh& mesh) {
   return part;
 }
 
-/// Puts the part at a pose, in Embree's coordinates: axes of W about centre_W. Costs nothing where it is there already.
-void put(Part& part, const SE3& T_W_O, const Vector3d& centre_W) {
-  if (part.put_about_W == centre_W && part.T_W_O.coeffs() == T_W_O.coeffs()) return;
+/// Puts the part at a pose, in Embree's coordinates: axes of W about centre_W. False where it is there already.
+bool put(Part& part, const SE3& T_W_O, const Vector3d& centre_W) {
+  if (part.put_about_W == centre_W && part.T_W_O.coeffs() == T_W_O.coeffs()) return false;
   part.put_about_W = centre_W;
   part.T_W_O = T_W_O;
   part.R_O_W = T_W_O.rotation().transpose();
@@ -107,6 +109,7 @@ void put(Part& part, const SE3& T_W_O, const Vector3d& centre_W) {
   T << T_W_O.rotation().cast<float>(), (T_W_O.translation() - centre_W).cast<float>();
   rtcSetGeometryTransform(part.instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, T.data());
   rtcCommitGeometry(part.instance.get());
+  return true;
 }
 
 RTCRay embree_ray(const Vector3d& origin, const Vector3d& direction, float near_m, float far_m) {
@@ -157,7 +160,7 @@ struct RayCaster::Scene {
   void pose_actors(double t_s);
   void attach(Part& part);
   void detach(Part& part);
-  Hit hit_of(const Ray& ray, const RTCRayHit& answer) const;
+  Hit hit_of(const Ray& ray, float range_m, const Vector3f& normal_O, unsigned slot_hit, unsigned triangle) const;
 
   const Place& world;
   double reach_m;
@@ -168,6 +171,7 @@ struct RayCaster::Scene {
   std::vector<bool> present;         ///< which actors are attached
   std::vector<const Part*> part_at;  ///< by Embree's number
   Vector3d centre_W;                 ///< origin of Embree's coordinates
+  bool changed = true;               ///< since the last commit
 };
 
 RayCaster::Scene::Scene(const Place& place_to_cast_in, double reach)
@@ -185,11 +189,13 @@ void RayCaster::Scene::attach(Part& part) {
   part.slot = rtcAttachGeometry(top.get(), part.instance.get());
   if (part.slot >= part_at.size()) part_at.resize(part.slot + 1, nullptr);
   part_at[part.slot] = &part;
+  changed = true;
 }
 
 void RayCaster::Scene::detach(Part& part) {
   rtcDetachGeometry(top.get(), part.slot);
   part_at[part.slot] = nullptr;
+  changed = true;
 }
 
 void RayCaster::Scene::exchange_tiles(const Vector3d& p_W) {
@@ -214,7 +220,7 @@ void RayCaster::Scene::arrange(const Vector3d& p_W) {
   exchange_tiles(p_W);
   // Whole metres, so that tiles with such origins are placed without rounding.
   centre_W = p_W.array().round();
-  for (auto& [index, part] : tiles) put(part, part.T_W_O, centre_W);
+  for (auto& [index, part] : tiles) changed |= put(part, part.T_W_O, centre_W);
 }
 
 void RayCaster::Scene::pose_actors(double t_s) {
@@ -224,15 +230,16 @@ void RayCaster::Scene::pose_actors(double t_s) {
     if (now && !present[i]) attach(actors[i]);
     if (!now && present[i]) detach(actors[i]);
     present[i] = now;
-    if (now) put(actors[i], actor.pose(t_s), centre_W);
+    if (now) changed |= put(actors[i], actor.pose(t_s), centre_W);
   }
 }
 
-Hit RayCaster::Scene::hit_of(const Ray& ray, const RTCRayHit& answer) const {
-  if (answer.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const Part& part = *part_at[answer.hit.instID[0]];
-  Vector3f normal_W = Vector3f(answer.hit.Ng_x, answer.hit.Ng_y, answer.hit.Ng_z).normalized();
-  Vector3d p_own = ray.origin_W + static_cast<double>(answer.ray.tfar) * ray.direction_W - part.T_W_O.translation();
+/// normal_O: along it; slot_hit: of the instance.
+Hit RayCaster::Scene::hit_of(const Ray& ray, float range_m, const Vector3f& normal_O, unsigned slot_hit,
+                             unsigned triangle) const {
+  const Part& part = *part_at[slot_hit];
+  Vector3f normal_W = normal_O.normalized();
+  Vector3d p_own = ray.origin_W + static_cast<double>(range_m) * ray.direction_W - part.T_W_O.translation();
   if (part.actor == Hit::kStatic) {
     p_own += part.texture_shift_O;
   } else {
@@ -240,11 +247,11 @@ Hit RayCaster::Scene::hit_of(const Ray& ray, const RTCRayHit& answer) const {
     normal_W = part.R_O_W.transpose().cast<float>() * normal_W;
   }
   if (normal_W.dot(ray.direction_W.cast<float>()) > 0.0F) normal_W = -normal_W;
-  return {.range_m = answer.ray.tfar,
+  return {.range_m = range_m,
           .normal_W = normal_W,
           .p_own = p_own.cast<float>(),
-          .surface = part.surface[answer.hit.primID],
-          .warmer_K = part.warmer_K[answer.hit.primID],
+          .surface = part.surface[triangle],
+          .warmer_K = part.warmer_K[triangle],
           .actor = part.actor};
 }
 
@@ -255,7 +262,7 @@ RayCaster::~RayCaster() = default;
 void RayCaster::move_to(const Vector3d& p_W, double t_s) {
   scene_->arrange(p_W);
   scene_->pose_actors(t_s);
-  commit(scene_->device.get(), scene_->top.get());
+  if (std::exchange(scene_->changed, false)) commit(scene_->device.get(), scene_->top.get());
 }
 
 Hit RayCaster::cast(const Ray& ray) const {
@@ -264,7 +271,9 @@ Hit RayCaster::cast(const Ray& ray) const {
       .hit = {}};
   answer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene_->top.get(), &answer);
-  return scene_->hit_of(ray, answer);
+  const RTCHit& hit = answer.hit;
+  if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return scene_->hit_of(ray, answer.ray.tfar, {hit.Ng_x, hit.Ng_y, hit.Ng_z}, hit.instID[0], hit.primID);
 }
 
 void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -277,9 +286,12 @@ void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
     alignas(32) std::array<int, kPacket> valid{};
     std::fill_n(valid.begin(), some.size(), -1);
     rtcIntersect8(valid.data(), scene_->top.get(), &answers, &arguments);
-    auto* any_width = reinterpret_cast<RTCRayHitN*>(&answers);
+    const RTCHit8& hit = answers.hit;
     for (std::size_t i = 0; i < some.size(); ++i)
-      hits[first + i] = scene_->hit_of(some[i], rtcGetRayHitFromRayHitN(any_width, kPacket, static_cast<unsigned>(i)));
+      hits[first + i] = hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
+                            ? Hit{}
+                            : scene_->hit_of(some[i], answers.ray.tfar[i], {hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]},
+                                             hit.instID[0][i], hit.primID[i]);
   }
 }
 
@@ -291,6 +303,21 @@ bool RayCaster::blocked(const Vector3d& from_W, const Vector3d& to_W) const {
   if (ray.tfar <= ray.tnear) return false;
   rtcOccluded1(scene_->top.get(), &ray);
   return ray.tfar < 0.0F;
+}
+
+void RayCaster::blocked(std::span<const Ray> rays, double length_m, std::span<std::uint8_t> blocked) const {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const auto some = rays.subspan(first, std::min(kPacket, rays.size() - first));
+    RTCRay8 packet = packet_of(some, scene_->centre_W, static_cast<float>(length_m)).ray;
+    std::ranges::fill(packet.tnear, kBlockedMargin_m);
+    alignas(32) std::array<int, kPacket> valid{};
+    std::fill_n(valid.begin(), some.size(), -1);
+    rtcOccluded8(valid.data(), scene_->top.get(), &packet, &arguments);
+    for (std::size_t i = 0; i < some.size(); ++i) blocked[first + i] = packet.tfar[i] < 0.0F;
+  }
 }
 
 }  // namespace pllit

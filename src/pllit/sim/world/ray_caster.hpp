@@ -44,6 +44,8 @@ class RayCaster {
   void cast(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// Whether anything lies between two points (1 mm at either end apart).
   bool blocked(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const;
+  /// Whether anything lies on each of many rays, from 1 mm to length_m; for rays that are much alike. 0: nothing.
+  void blocked(std::span<const Ray> rays, double length_m, std::span<std::uint8_t> blocked) const;
 
  private:
   struct Scene;

@@ -1,0 +1,56 @@
+#include "pllit/sim/camera/patches.hpp"
+
+#include <cmath>
+
+namespace pllit {
+namespace {
+
+constexpr float kSameNormal = 0.99F;  // cosine
+constexpr float kSameRange = 0.02F;   // relative
+
+bool alike(const Hit& a, const Hit& b) {
+  if (!a || !b) return !a && !b;
+  return a.surface == b.surface && a.actor == b.actor && a.warmer_K == b.warmer_K &&
+         a.normal_W.dot(b.normal_W) > kSameNormal && std::abs(a.range_m - b.range_m) < kSameRange * a.range_m;
+}
+
+}  // namespace
+
+Patches::Patches(std::span<const Ray> rays, std::span<const Hit> hits, std::size_t samples)
+    : rays_(rays), hits_(hits), first_(hits.size()) {
+  for (std::size_t pixel = 0; pixel < hits.size(); pixel += samples)
+    for (std::size_t i = pixel; i < pixel + samples; ++i) {
+      std::size_t first = pixel;
+      while (first < i && (first_[first] != first || !alike(hits[first], hits[i]))) ++first;
+      first_[i] = first;
+    }
+}
+
+void Patches::seek_sun_of(const std::vector<std::size_t>& chosen, const RayCaster& caster, const Vector3d& to_sun_W) {
+  constexpr double far_m = 150.0, off_m = 0.01;
+  std::vector<Ray> rays;
+  rays.reserve(chosen.size());
+  for (const std::size_t i : chosen)
+    rays.push_back(
+        {rays_[i].origin_W + hits_[i].range_m * rays_[i].direction_W + off_m * hits_[i].normal_W.cast<double>(),
+         to_sun_W});
+  std::vector<std::uint8_t> blocked(rays.size());
+  caster.blocked(rays, far_m, blocked);
+  in_sun_.assign(hits_.size(), 0);
+  for (std::size_t k = 0; k < chosen.size(); ++k) in_sun_[chosen[k]] = blocked[k] == 0;
+}
+
+void Patches::seek_mirrored_of(const std::vector<std::size_t>& chosen, const RayCaster& caster) {
+  std::vector<Ray> rays;
+  rays.reserve(chosen.size());
+  for (const std::size_t i : chosen) rays.push_back(mirrored_ray(rays_[i], hits_[i]));
+  std::vector<Hit> hits(rays.size());
+  caster.cast(rays, hits);
+  mirrored_of_.assign(hits_.size(), 0);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    mirrored_.push_back({rays[k], hits[k]});
+    mirrored_of_[chosen[k]] = mirrored_.size();
+  }
+}
+
+}  // namespace pllit

@@ -1,0 +1,57 @@
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace pllit::test {
+namespace {
+
+using testing::HasSubstr;
+
+class Simulate : public ProgramTest {};
+
+TEST_F(Simulate, WritesABagThatDoctorAndRunAccept) {
+  const auto made = run({"simulate", "room", "--duration", "5", "--seed", "2", "--set", "rig=inspection", "--set",
+                         "image_rate=1", "--set", "images=both", "--out", path("room.bag")});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.out, path("room.bag") + "\n");
+  for (const char* beside : {"room.tum", "room.biases.csv", "room.scene.json"})
+    EXPECT_TRUE(std::filesystem::exists(path(beside))) << beside;
+  EXPECT_EQ(nlohmann::json::parse(read(path("room.scene.json")))["rig"], "inspection");
+
+  const auto doctor = run({"doctor", path("room.bag"), "--config", "inspection"});
+  EXPECT_EQ(doctor.exit_code, 0) << doctor.err;
+  EXPECT_THAT(doctor.out, HasSubstr("/thermal/image_agc"));
+
+  const auto session = run({"run", path("room.bag"), "--config", "inspection", "--truth", path("room.tum"), "--out",
+                            path("session"), "--json"});
+  ASSERT_EQ(session.exit_code, 0) << session.err;
+  EXPECT_LT(nlohmann::json::parse(session.out)["ape"]["rmse"].get<double>(), 0.05);
+}
+
+TEST_F(Simulate, SaysWhichScenesAndKeysThereAre) {
+  const auto list = run({"simulate", "--list"});
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_THAT(list.out, testing::AllOf(HasSubstr("plant"), HasSubstr("H18"), HasSubstr("image_rate")));
+  const auto unknown = run({"simulate", "romm", "--out", path("x.bag")});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, testing::AllOf(HasSubstr("did you mean room"), HasSubstr("corridor")));
+  EXPECT_EQ(run({"simulate", "room"}).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("x.bag")));
+}
+
+TEST_F(Simulate, NamesTheFileThatARowMisses) {
+  const auto missing = run({"simulate", "room", "--set", "motion=nowhere.tum", "--out", path("x.bag")});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.err, testing::AllOf(HasSubstr("nowhere.tum"), HasSubstr("PLLIT_DATA")));
+}
+
+TEST_F(Simulate, NeverReplacesABagUnasked) {
+  write("old.bag", "precious");
+  const auto refused = run({"simulate", "room", "--duration", "3", "--out", path("old.bag")});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(read(path("old.bag")), "precious");
+}
+
+}  // namespace
+}  // namespace pllit::test

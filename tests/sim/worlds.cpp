@@ -1,0 +1,134 @@
+// Whole rigs in whole worlds.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <nlohmann/json.hpp>
+
+#include "pllit/sim/sequences.hpp"
+#include "pllit/sim/simulation.hpp"
+
+namespace pllit {
+namespace {
+
+struct Tally {
+  int imu = 0, scans = 0, images = 0;
+  std::uint64_t hash = 14695981039346656037u;  // FNV-1a over all that was delivered
+  std::vector<SensorEvent> events;
+
+  template <class Value>
+  void add(const Value* values, std::size_t count) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(values);
+    for (std::size_t i = 0; i < count * sizeof(Value); ++i) hash = (hash ^ bytes[i]) * 1099511628211u;
+  }
+};
+
+Tally drained(Simulation& simulation) {
+  Tally tally;
+  while (auto event = simulation.next().value()) {
+    tally.add(&event->received, 1);
+    if (const auto* imu = std::get_if<ImuSample>(&event->data)) {
+      ++tally.imu;
+      tally.add(imu->accel_mps2.data(), 3);
+    } else if (const auto* scan = std::get_if<LidarScan>(&event->data)) {
+      ++tally.scans;
+      tally.add(scan->points_L.data(), scan->points_L.size());
+      tally.add(scan->rings.data(), scan->rings.size());
+    } else {
+      ++tally.images;
+      const cv::Mat& counts = std::get<CameraFrame>(event->data).counts;
+      tally.add(counts.data, counts.total() * counts.elemSize());
+    }
+    tally.events.push_back(std::move(*event));
+  }
+  return tally;
+}
+
+Tally made(const std::string& address) {
+  auto simulation = open_simulation(address);
+  EXPECT_TRUE(simulation) << simulation.error().message;
+  return drained(*simulation);
+}
+
+TEST(SimulatedWorlds, DeliverTheirRigsSensorsInEveryScene) {
+  for (const std::string scene : {"room", "corridor", "stairs", "plant", "street", "field"}) {
+    const Tally tally = made("sim:" + scene + "?duration=3&image_rate=1&seed=2");
+    EXPECT_GE(tally.imu, 600) << scene;
+    EXPECT_EQ(tally.scans, 30) << scene;
+    EXPECT_EQ(tally.images, 3) << scene;
+    EXPECT_TRUE(std::ranges::is_sorted(tally.events, {}, &SensorEvent::received)) << scene;
+    for (const SensorEvent& event : tally.events)
+      if (const auto* scan = std::get_if<LidarScan>(&event.data)) {
+        EXPECT_GT(scan->points_L.size(), 3000u) << scene;
+        EXPECT_EQ(scan->rings.size(), scan->points_L.size());
+        EXPECT_TRUE(std::ranges::is_sorted(scan->offsets));
+      }
+  }
+}
+
+TEST(SimulatedWorlds, AreTheSameBytesForTheSameSeedAndOthersForAnother) {
+  const auto hash = [](const std::string& options) {
+    return made("sim:plant?duration=3&image_rate=2&people=2&images=both&" + options).hash;
+  };
+  const auto first = hash("seed=5");
+  EXPECT_EQ(first, hash("seed=5"));
+  EXPECT_NE(first, hash("seed=6"));
+}
+
+TEST(SimulatedWorlds, BeginWithTwoSecondsOfExactRest) {
+  auto simulation = open_simulation("sim:room?duration=4&images=none&seed=3");
+  ASSERT_TRUE(simulation);
+  const Trajectory truth = simulation->truth();
+  for (const StampedPose& pose : truth) {
+    if (pose.time - truth.front().time >= std::chrono::seconds(2)) break;
+    ASSERT_EQ(pose.T_W_I.translation(), truth.front().T_W_I.translation());
+  }
+  EXPECT_GT((truth.back().T_W_I.translation() - truth.front().T_W_I.translation()).norm(), 0.1);
+}
+
+TEST(SimulatedWorlds, GiveOutAThermalCamerasCountsAndItsVideo) {
+  const Tally tally = made("sim:plant?duration=3&image_rate=2&images=both&seed=4");
+  int counts = 0, grey = 0;
+  for (const SensorEvent& event : tally.events)
+    if (const auto* frame = std::get_if<CameraFrame>(&event.data))
+      (frame->counts.type() == CV_16UC1 ? counts : grey) += 1;
+  EXPECT_EQ(counts, 6);
+  EXPECT_EQ(grey, 6);
+}
+
+TEST(SimulatedWorlds, TellWhatIsToBeFoundAndWhenItCouldBeSeen) {
+  auto simulation =
+      open_simulation("sim:room?rig=inspection&finding=table&finding_at=3&duration=40&image_rate=0.7&seed=1");
+  ASSERT_TRUE(simulation) << simulation.error().message;
+  drained(*simulation);
+  const SceneTruth truth = simulation->scene_truth();
+  const auto findings = std::ranges::count_if(truth.objects, &SceneObject::finding);
+  EXPECT_EQ(findings, 1);
+  EXPECT_GT(truth.objects.size(), 1u) << "a cold object and a hot radiator are there to be left alone";
+  const auto finding = std::ranges::find_if(truth.objects, &SceneObject::finding);
+  EXPECT_TRUE(finding->arrival == "heated" || finding->arrival == "brought");
+  ASSERT_TRUE(finding->first_seen_s);
+  EXPECT_GE(*finding->first_seen_s, 3.0);
+  EXPECT_LE(*finding->first_seen_s, 40.0);
+  const auto json = scene_json(truth, "sim:...");
+  EXPECT_EQ(json["objects"].size(), truth.objects.size());
+  EXPECT_NE(json["T_I_C"]["known"], json["T_I_C"]["true"]);
+}
+
+TEST(SimulatedWorlds, AreKnownExactlyOnlyWhereTheyAreIdeal) {
+  auto ideal = open_simulation("sim:room?duration=3&ideal=1&images=none");
+  ASSERT_TRUE(ideal);
+  const SceneTruth truth = ideal->scene_truth();
+  EXPECT_EQ(truth.T_I_C.coeffs(), truth.T_I_C_known.coeffs());
+  EXPECT_EQ(truth.lidar_clock, Duration{0});
+  EXPECT_EQ(truth.imu.gyro_density, 0.0);
+}
+
+TEST(SimulatedWorlds, NeedTheFileOfAMotionToBeRead) {
+  const auto config = parse_sim_config("sim:room?motion=walk.tum");
+  ASSERT_TRUE(config);
+  EXPECT_FALSE(Simulation::make(*config));
+}
+
+}  // namespace
+}  // namespace pllit
