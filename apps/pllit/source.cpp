@@ -16,11 +16,16 @@ namespace {
 
 std::optional<TimeUnit> point_time_unit(PointTimeUnit unit) {
   switch (unit) {
-    case PointTimeUnit::automatic: return std::nullopt;
-    case PointTimeUnit::s: return TimeUnit::seconds;
-    case PointTimeUnit::ms: return TimeUnit::milliseconds;
-    case PointTimeUnit::us: return TimeUnit::microseconds;
-    case PointTimeUnit::ns: return TimeUnit::nanoseconds;
+    case PointTimeUnit::automatic:
+      return std::nullopt;
+    case PointTimeUnit::s:
+      return TimeUnit::seconds;
+    case PointTimeUnit::ms:
+      return TimeUnit::milliseconds;
+    case PointTimeUnit::us:
+      return TimeUnit::microseconds;
+    case PointTimeUnit::ns:
+      return TimeUnit::nanoseconds;
   }
   return std::nullopt;
 }
@@ -28,7 +33,8 @@ std::optional<TimeUnit> point_time_unit(PointTimeUnit unit) {
 Expected<OpenedSource> open_simulator(const std::string& address, Images images) {
   auto simulation = open_simulation_with_files(address, images);
   if (!simulation) return std::unexpected(simulation.error());
-  OpenedSource opened{.events = nullptr, .rig = simulation->rig(), .truth = simulation->truth(), .scene_json = {}, .name = address};
+  OpenedSource opened{
+      .events = nullptr, .rig = simulation->rig(), .truth = simulation->truth(), .scene_json = {}, .name = address};
   auto events = std::make_unique<Simulation>(std::move(*simulation));
   opened.scene_json = [&truth = *events, address] { return scene_json(truth.scene_truth(), address).dump(2); };
   opened.events = std::move(events);
@@ -43,21 +49,26 @@ Expected<OpenedSource> open_recording(const std::vector<std::string>& sources, c
                                 .with_images = images == Images::wanted,
                                 .point_time_unit = point_time_unit(config.input.lidar_time_unit)});
   if (!bags) return std::unexpected(bags.error());
-  return OpenedSource{
-      .events = std::move(*bags), .rig = make_rig(config.rig), .truth = {}, .scene_json = {}, .name = paths.front().stem().string()};
+  return OpenedSource{.events = std::move(*bags),
+                      .rig = make_rig(config.rig),
+                      .truth = {},
+                      .scene_json = {},
+                      .name = paths.front().stem().string()};
 }
 
 /// Where a motion's file lies: as it is named, or among the recordings.
 Expected<std::filesystem::path> motion_file(const std::filesystem::path& name) {
   std::vector<std::filesystem::path> places{name};
-  if (const char* data = std::getenv("PLLIT_DATA")) places.push_back(std::filesystem::path(data) / "trajectories" / name);
+  if (const char* data = std::getenv("PLLIT_DATA"))
+    places.push_back(std::filesystem::path(data) / "trajectories" / name);
   places.push_back(std::filesystem::path("../shared/data/trajectories") / name);
   std::string tried;
   for (const auto& place : places) {
     if (std::filesystem::is_regular_file(place)) return place;
     tried += (tried.empty() ? "" : ", ") + place.string();
   }
-  return input_error(std::format("the motion's file is missing; looked for {} (the folder can be set with PLLIT_DATA)", tried));
+  return input_error(
+      std::format("the motion's file is missing; looked for {} (the folder can be set with PLLIT_DATA)", tried));
 }
 
 }  // namespace

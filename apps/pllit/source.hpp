@@ -18,14 +18,17 @@ struct OpenedSource {
   std::unique_ptr<EventSource> events;
   Rig rig;
   Trajectory truth;  ///< empty for recordings
-  std::function<std::string()> scene_json;  ///< what a simulation knows besides, as far as it has run; empty for recordings
+  std::function<std::string()>
+      scene_json;    ///< what a simulation knows besides, as far as it has run; empty for recordings
   std::string name;  ///< for the session folder
 };
 
 enum class Images { skipped, wanted };
 
-/// Opens `sim:...` or the bags. The simulator brings its own rig, as its data sheets say; a recording takes the configuration's.
-Expected<OpenedSource> open_source(const std::vector<std::string>& sources, const Config& config, Images images = Images::skipped);
+/// Opens `sim:...` or the bags. The simulator brings its own rig, as its data sheets say; a recording takes the
+/// configuration's.
+Expected<OpenedSource> open_source(const std::vector<std::string>& sources, const Config& config,
+                                   Images images = Images::skipped);
 /// Opens `sim:...` and reads the file that it names.
 Expected<Simulation> open_simulation_with_files(const std::string& address, Images images);
 bool is_simulation(const std::vector<std::string>& sources);

@@ -41,7 +41,8 @@ FrameSink session_sink(SessionWriter& session, MapRecorder& map) {
   };
 }
 
-nlohmann::ordered_json run_json(const RunSummary& summary, const Options& options, const Config& config, const char* status) {
+nlohmann::ordered_json run_json(const RunSummary& summary, const Options& options, const Config& config,
+                                const char* status) {
   nlohmann::ordered_json json = summary_json(summary);
   json["status"] = status;
   json["program"] = version_line();
@@ -79,7 +80,8 @@ class SessionRun {
 
   Expected<ExitCode> operator()() {
     if (!source_.truth.empty())
-      if (auto done = write_tum(session_.folder() / "truth.tum", source_.truth); !done) return std::unexpected(done.error());
+      if (auto done = write_tum(session_.folder() / "truth.tum", source_.truth); !done)
+        return std::unexpected(done.error());
     RunSummary summary;
     // What a kill leaves behind says of itself that it is unfinished.
     if (auto done = session_.write_run(run_json(summary, options_, config_, "unfinished")); !done)
@@ -103,7 +105,8 @@ class SessionRun {
     auto json = run_json(summary, options_, config_, status);
     if (!result) json["error"] = result.error().message;
     if (source_.scene_json)
-      if (auto done = write_file(session_.folder() / "scene.json", source_.scene_json() + "\n"); !done) return std::unexpected(done.error());
+      if (auto done = write_file(session_.folder() / "scene.json", source_.scene_json() + "\n"); !done)
+        return std::unexpected(done.error());
     const auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
     if (!scored) json["notes"].push_back(scored.error().message);
     if (auto done = session_.write_run(json); !done) return std::unexpected(done.error());
@@ -121,7 +124,8 @@ class SessionRun {
     const std::string folder = session_.folder().string();
     json.erase("config");
     json["session"] = folder;
-    std::fputs((options_.json ? json.dump(2) + "\n" : summary_text(json) + "session     " + folder + "\n").c_str(), stdout);
+    std::fputs((options_.json ? json.dump(2) + "\n" : summary_text(json) + "session     " + folder + "\n").c_str(),
+               stdout);
   }
 
   const Options& options_;
@@ -139,8 +143,9 @@ Expected<ExitCode> run_session(const Options& options) {
   if (!source) return std::unexpected(source.error());
   auto truth = truth_of(options, *source);
   if (!truth) return std::unexpected(truth.error());
-  const fs::path folder = options.out.empty() ? default_session_folder("results", source->name, std::chrono::system_clock::now())
-                                              : fs::path(options.out);
+  const fs::path folder = options.out.empty()
+                              ? default_session_folder("results", source->name, std::chrono::system_clock::now())
+                              : fs::path(options.out);
   auto session =
       SessionWriter::create(folder, {.health_columns = health_columns(), .map_fields = MapRecorder::fields()});
   if (!session) return std::unexpected(session.error());
@@ -159,8 +164,11 @@ ExitCode run(const Options& options) {
 Verb add_run(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("run", "Estimate trajectory and map from a recording or a simulation");
   const auto options = std::make_shared<Options>();
-  verb->add_option("source", options->sources, "ROS 1 bags of one recording, or sim:SCENE?key=value&...")->type_name("SOURCE...")->required();
-  verb->add_option("--config", options->config, "Preset or YAML file (default: the defaults)")->type_name("FILE|PRESET");
+  verb->add_option("source", options->sources, "ROS 1 bags of one recording, or sim:SCENE?key=value&...")
+      ->type_name("SOURCE...")
+      ->required();
+  verb->add_option("--config", options->config, "Preset or YAML file (default: the defaults)")
+      ->type_name("FILE|PRESET");
   verb->add_option("--out", options->out, "Session folder (default: results/NAME-TIME)")->type_name("DIR");
   verb->add_option("--truth", options->truth, "True trajectory to score against")->type_name("FILE.tum");
   verb->add_option("--set", options->settings, "Replace one value of the configuration, e.g. map.voxel_m=0.3")

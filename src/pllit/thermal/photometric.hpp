@@ -38,7 +38,7 @@ struct PhotometricConfig {
   double least_gain = 0.2, most_gain = 5.0;
   int dark = 2, bright = 253;  ///< raw greys beyond these are clipped and tell nothing
   int curve_pairs = 60;        ///< a polyline needs as many
-  double curve_gain = 0.75;     ///< and must lower the residuals' rms to this share
+  double curve_gain = 0.75;    ///< and must lower the residuals' rms to this share
 };
 
 struct PhotometricFit {

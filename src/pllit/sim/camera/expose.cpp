@@ -17,6 +17,15 @@ void add(ExposurePoses& poses, const SE3& T_W_C) {
   poses.p_W.push_back(T_W_C.translation());
 }
 
+/// By how much the image moves in all but the first tenth of the exposure, for things at 6 m.
+double smear_rad(const ExposurePoses& poses) {
+  constexpr double range_m = 6.0;
+  const std::size_t first = poses.p_W.size() / 10;
+  const Matrix3d turn = poses.R_W_C[first].transpose() * poses.R_W_C.back();
+  return std::acos(std::clamp(0.5 * (turn.trace() - 1.0), -1.0, 1.0)) +
+         (poses.p_W.back() - poses.p_W[first]).norm() / range_m;
+}
+
 float fraction(double x) { return static_cast<float>(x - std::floor(x)); }
 
 /// Everything that the blocks of one image share.
@@ -26,6 +35,7 @@ struct Job {
   const ExposurePoses& poses;
   std::span<const Vector3d> first, more;  ///< right, down and moment of each sample of a pixel, before its turn
   float spread;
+  int reach;  ///< px within which samples are compared
   const Shade& shade;
   Vector3d phase;  ///< of this image
 };
@@ -109,16 +119,22 @@ void expose_block(const Job& job, int left, int top, int right, int bottom, Buff
   }
 }
 
-/// Whether the samples of a pixel and of those beside, above and below it differ.
-bool is_uneven(const First& image, int column, int row, float spread) {
-  const auto at = [](const cv::Mat& of, int x, int y) {
-    return of.at<float>(std::clamp(y, 0, of.rows - 1), std::clamp(x, 0, of.cols - 1));
+/// Whether the samples of a pixel and of those up to job.reach beside, above and below it differ.
+bool is_uneven(const Job& job, const First& image, int column, int row) {
+  float least = image.least.at<float>(row, column), most = image.most.at<float>(row, column);
+  const auto add = [&](int x, int y) {
+    x = std::clamp(x, 0, image.mean.cols - 1);
+    y = std::clamp(y, 0, image.mean.rows - 1);
+    least = std::min(least, image.least.at<float>(y, x));
+    most = std::max(most, image.most.at<float>(y, x));
   };
-  const auto over_cross = [&](const cv::Mat& of) {
-    return std::array{at(of, column, row), at(of, column - 1, row), at(of, column + 1, row), at(of, column, row - 1),
-                      at(of, column, row + 1)};
-  };
-  return std::ranges::max(over_cross(image.most)) - std::ranges::min(over_cross(image.least)) > spread;
+  for (int d = 1; d <= job.reach; ++d) {
+    add(column - d, row);
+    add(column + d, row);
+    add(column, row - d);
+    add(column, row + d);
+  }
+  return most - least > job.spread;
 }
 
 /// Adds more samples to the uneven pixels of some rows.
@@ -126,7 +142,7 @@ void refine(const Job& job, const First& first, int top, int bottom, cv::Mat& im
   Buffers buffers;
   for (int row = top; row < bottom; ++row)
     for (int column = 0; column < image.cols; ++column)
-      if (is_uneven(first, column, row, job.spread)) buffers.pixels.push_back({column, row});
+      if (is_uneven(job, first, column, row)) buffers.pixels.push_back({column, row});
   sample(job, buffers.pixels, job.more, buffers);
   const float share = static_cast<float>(job.first.size()) / static_cast<float>(job.first.size() + job.more.size());
   auto value = buffers.values.begin();
@@ -158,8 +174,11 @@ cv::Mat expose(const RayTable& table, const RayCaster& caster, const ExposurePos
                std::uint64_t seed, const Shade& shade, Arena& arena) {
   Random random(seed);
   const double right = random.uniform(), down = random.uniform(), moment = random.uniform();
-  const std::vector<Vector3d> first = sample_pattern(sampling.first), more = sample_pattern(sampling.more);
-  const Job job{table, caster, poses, first, more, sampling.spread, shade, {right, down, moment}};
+  // Long smears need more samples, and farther from where the first ones have shown them.
+  const int reach =
+      1 + static_cast<int>(std::min(1.0, 0.25 * smear_rad(poses) / static_cast<double>(table.pixel_rad())));
+  const std::vector<Vector3d> first = sample_pattern(sampling.first), more = sample_pattern(sampling.more * reach);
+  const Job job{table, caster, poses, first, more, sampling.spread, reach, shade, {right, down, moment}};
   First image({table.width(), table.height()});
   const auto rows = static_cast<std::size_t>(table.height());
   arena.for_chunks(rows, kBlockRows, [&](std::size_t begin, std::size_t end) {

@@ -33,7 +33,7 @@ ExposurePoses fading_memory(const CameraPath& path, Time readout, Duration time_
 using Shade = std::function<void(std::span<const Ray>, std::span<const Hit>, std::size_t samples, std::span<float>)>;
 
 /// How many samples a pixel gets: `first`, and `more` where these differ by more than `spread`, in the unit of Shade,
-/// within it or from those of its neighbours, as on edges and where these move.
+/// within it or from those of its neighbours, as on edges. Where the camera moves fast, up to twice as many.
 struct Sampling {
   int first = 2, more = 8;
   float spread = 0.0F;

@@ -95,7 +95,7 @@ float lattice(const Texture& texture, const Lattice& lattice, const Vector2f& uv
   const float cell = joints / (1.0F - joints) + own * seen;
   const float joint_seen = visibility(lattice.joint * texture.scale_m, 0.25F * footprint_m);
   const float without_joints = own * seen;
-  return without_joints + joint_seen * ((in_joint ? -1.0F : cell) - without_joints);
+  return (1.0F - joint_seen) * without_joints + joint_seen * (in_joint ? -1.0F : cell);
 }
 
 float planks(const Texture& texture, const Vector2f& uv_m, float footprint_m) {

@@ -12,7 +12,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3f;
 using shapes::panel;
 
-constexpr double kBeyond_m = 60.0;  // the end walls are out of a LiDAR's useful view from everywhere on the path
+constexpr double kBeyond_m = 130.0;  // the end walls are beyond a LiDAR's reach from everywhere on the path
 constexpr double kPiece_m = 6.0;    // surfaces are cut into pieces so that tiles stay small
 
 struct Shell {

@@ -175,7 +175,7 @@ class PieceBuilder {
 
   void add_kerbside(double side) {
     for (std::size_t i = piece_.first + 2 + static_cast<std::size_t>(random_.uniform() * 4.0); i < piece_.last;
-         i += 3 + static_cast<std::size_t>(random_.uniform() * 4.0)) {
+         i += 4 + static_cast<std::size_t>(random_.uniform() * 5.0)) {
       const Vector2d away = side * station(i).left, p = station(i).p + (kKerb_m + 0.7) * away;
       const double choice = random_.uniform();
       const float to_road = static_cast<float>(std::atan2(-away.y(), -away.x()));

@@ -62,7 +62,7 @@ constexpr std::array kRows{
     Row{tank,           "tank",             .5F, .5F, .9F, .1F, 1.5F, .1F, 6.F, .2F, stains, .9F, .06F, clouds, 1.2F, .7F},
     Row{ceramic,        "ceramic",          .7F, .8F, .92F, .05F, .2F, .3F, 0, 0, plain, 1.F, 0, clouds, .1F, .2F},
     Row{skin,           "skin",             .55F, .5F, .98F, 0, 11.F, .1F, 0, 0, plain, 1.F, 0, clouds, .15F, .8F},
-    Row{clothes,        "clothes",          .4F, .3F, .96F, 0, 5.F, .3F, 2.F, .1F, stains, .3F, .1F, stains, .25F, 1.2F},
+    Row{clothes,        "clothes",          .4F, .3F, .96F, 0, 5.F, .3F, 2.F, .1F, stains, .3F, .05F, stains, .25F, 1.2F},
     Row{screen,         "screen",           .1F, .06F, .92F, .1F, 5.F, .2F, 0, 0, plain, 1.F, 0, clouds, .3F, 1.F},
     Row{asphalt,        "asphalt",          .14F, .16F, .95F, 0, 1.F, .05F, 16.F, .7F, speckle, .04F, .04F, clouds, 1.8F, .8F},
     Row{lane_paint,     "lane paint",       .75F, .75F, .93F, 0, .3F, .05F, 10.F, .7F, stains, .3F, .15F, stains, 1.8F, .4F},
@@ -75,7 +75,7 @@ constexpr std::array kRows{
     Row{leaves,         "leaves",           .6F, .18F, .97F, 0, -.5F, .8F, 2.F, .5F, speckle, .1F, .08F, clouds, .8F, 1.F},
     Row{bark,           "bark",             .35F, .2F, .95F, 0, .5F, .3F, 6.F, .3F, stains, .2F, .08F, stains, .3F, .8F},
     Row{grass,          "grass",            .55F, .22F, .97F, 0, -.8F, .6F, 5.F, .8F, clouds, 1.5F, .06F, clouds, 2.5F, 1.1F},
-    Row{earth,          "earth",            .3F, .25F, .94F, 0, .3F, .2F, 11.F, .8F, stains, 1.F, .08F, stains, 2.F, 1.F},
+    Row{earth,          "earth",            .3F, .25F, .94F, 0, .3F, .2F, 11.F, .8F, stains, 1.F, .04F, clouds, 2.F, 1.F},
     Row{car_paint,      "car body",         .45F, .4F, .9F, .15F, 2.F, .6F, 12.F, .5F, clouds, 1.F, .03F, clouds, .8F, .8F},
     Row{car_glass,      "car window",       .07F, .12F, .88F, .5F, .5F, .6F, 4.F, .4F, plain, 1.F, 0, clouds, .6F, .4F},
     Row{tyre,           "tyre",             .07F, .06F, .95F, 0, 3.F, .3F, 8.F, .2F, plain, 1.F, 0, clouds, .2F, .5F},
@@ -83,7 +83,7 @@ constexpr std::array kRows{
     Row{street_metal,   "street furniture", .45F, .4F, .85F, .1F, .2F, .7F, 9.F, .4F, plain, 1.F, 0, clouds, .8F, .4F},
     Row{grating,        "grating",          .4F, .4F, .3F, .3F, .2F, .6F, 4.F, .1F, tiles, .05F, .15F, clouds, .8F, .3F},
     Row{rail_paint,     "railing",          .55F, .5F, .92F, .02F, -.2F, .6F, 5.F, .2F, plain, 1.F, 0, clouds, .6F, .3F},
-    Row{screed,         "concrete floor",   .4F, .42F, .94F, .01F, -.8F, .08F, 0, 0, stains, 1.4F, .05F, clouds, 1.8F, .35F},
+    Row{screed,         "concrete floor",   .4F, .42F, .94F, .01F, -.8F, .08F, 0, 0, stains, 1.4F, .02F, clouds, 1.8F, .35F},
     // clang-format on
 };
 

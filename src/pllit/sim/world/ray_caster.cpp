@@ -1,15 +1,12 @@
 #include "pllit/sim/world/ray_caster.hpp"
 
-#include <embree4/rtcore.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
-#include <stdexcept>
-#include <string>
 #include <utility>
+
+#include "pllit/sim/world/embree_scene.hpp"
 
 namespace pllit {
 namespace {
@@ -21,58 +18,6 @@ constexpr double kTextureWrap_m = 1024.0;
 const Vector3d kNowhere = Vector3d::Constant(std::numeric_limits<double>::infinity());
 /// What blocked() leaves out at either end.
 constexpr float kBlockedMargin_m = 1e-3F;
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-template <class Handle>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
-
-/// Embree reports out of memory or an unusable processor here: nothing that a caller could mend.
-void check(RTCDevice device) {
-  if (rtcGetDeviceError(device) == RTC_ERROR_NONE) return;
-  const char* message = rtcGetDeviceLastErrorMessage(device);
-  throw std::runtime_error("the ray caster's Embree library failed: " + std::string(message ? message : "no reason"));
-}
-
-/// Builds on one thread alone, so that the tree, and with it which of two coinciding triangles is hit, is always the
-/// same.
-void commit(RTCDevice device, RTCScene scene) {
-  tbb::task_arena alone(1);
-  alone.execute([scene] { rtcJoinCommitScene(scene); });
-  check(device);
-}
-
-Owned<RTCScene> new_scene(RTCDevice device) {
-  Owned<RTCScene> scene(rtcNewScene(device));
-  check(device);
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  return scene;
-}
-
-/// A scene of one mesh in the mesh's own frame.
-Owned<RTCScene> scene_of(RTCDevice device, const Mesh& mesh) {
-  Owned<RTCScene> scene = new_scene(device);
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);  // rays run faster; meshes are built but once
-  const Owned<RTCGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  if (!mesh.triangles.empty()) {
-    using Vertex = std::array<float, 3>;
-    using Triangle = std::array<std::uint32_t, 3>;
-    auto* vertices = static_cast<Vertex*>(rtcSetNewGeometryBuffer(
-        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vertex), mesh.vertices.size()));
-    auto* triangles = static_cast<Triangle*>(rtcSetNewGeometryBuffer(
-        geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), mesh.triangles.size()));
-    check(device);
-    std::ranges::transform(mesh.vertices, vertices, [](const Vector3f& v) { return Vertex{v.x(), v.y(), v.z()}; });
-    std::ranges::copy(mesh.triangles, triangles);
-  }
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometry(scene.get(), geometry.get());
-  commit(device, scene.get());
-  return scene;
-}
 
 /// A mesh placed in the world: a tile or an actor.
 struct Part {
