@@ -104,14 +104,15 @@ class SessionRun {
     const char* status = !result ? "failed" : summary.interrupted ? "interrupted" : "done";
     auto json = run_json(summary, options_, config_, status);
     if (!result) json["error"] = result.error().message;
-    if (source_.scene_json)
-      if (auto done = write_file(session_.folder() / "scene.json", source_.scene_json() + "\n"); !done)
-        return std::unexpected(done.error());
+    const auto scene = source_.scene_json ? write_file(session_.folder() / "scene.json", source_.scene_json() + "\n")
+                                          : Expected<void>{};
     const auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
     if (!scored) json["notes"].push_back(scored.error().message);
-    if (auto done = session_.write_run(json); !done) return std::unexpected(done.error());
+    const auto written = session_.write_run(json);
     print(json);
-    if (!result) return report(result.error());
+    // What stopped the run comes first: a full disk hits these files too.
+    for (const auto* done : {&result, &written, &scene})
+      if (!*done) return report(done->error());
     if (summary.interrupted) {
       spdlog::warn("interrupted; what was done is in {}", session_.folder().string());
       return ExitCode::failed;

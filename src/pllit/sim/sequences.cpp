@@ -6,6 +6,7 @@
 #include <charconv>
 #include <format>
 #include <ranges>
+#include <utility>
 
 #include "pllit/sim/config.hpp"
 
@@ -29,6 +30,19 @@ Expected<Sequence> parse_row(const std::string& name, const YAML::Node& row) {
                     .tier = static_cast<Sequence::Tier>(tier - kTierNames.begin())};
   if (const auto config = parse_sim_config(sequence.address(0)); !config) return wrong(config.error().message);
   return sequence;
+}
+
+/// An address with key=value in the place of the key's value, or behind it all.
+std::string with_key(std::string_view address, std::string_view assignment) {
+  const std::string_view key = assignment.substr(0, std::min(assignment.find('='), assignment.size()));
+  const std::size_t question = std::min(address.find('?'), address.size());
+  std::string changed(address.substr(0, question));
+  char separator = '?';
+  const auto add = [&](std::string_view part) { changed += std::exchange(separator, '&') + std::string(part); };
+  for (const auto part : std::views::split(address.substr(std::min(question + 1, address.size())), '&'))
+    if (const std::string_view old(part); !old.empty() && old.substr(0, old.find('=')) != key) add(old);
+  add(assignment);
+  return changed;
 }
 
 std::optional<std::uint64_t> row_seed(std::string_view text) {
@@ -68,20 +82,20 @@ Expected<std::string> expanded_address(std::string_view source) {
           : rows.end();
   if (row == rows.end()) return std::string(source);
   std::uint64_t seed = 0;
-  std::string more;
+  Sequence changed = *row;
   for (const auto part : std::views::split(source.substr(std::min(question + 1, source.size())), '&')) {
     const std::string_view assignment(part);
     if (assignment.empty()) continue;
-    if (!assignment.starts_with("seed=")) {
-      more += "&" + std::string(assignment);
-      continue;
+    if (assignment.starts_with("seed=")) {
+      const auto given = row_seed(assignment.substr(5));
+      if (!given)
+        return input_error(std::format("{}: a row's seed is a whole number from 0 to {}", source, kSeedsPerRow - 1));
+      seed = *given;
+    } else {
+      changed.source = with_key(changed.source, assignment);
     }
-    const auto given = row_seed(assignment.substr(5));
-    if (!given)
-      return input_error(std::format("{}: a row's seed is a whole number from 0 to {}", source, kSeedsPerRow - 1));
-    seed = *given;
   }
-  return row->address(seed) + more;
+  return changed.address(seed);
 }
 
 }  // namespace pllit

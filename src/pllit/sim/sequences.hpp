@@ -31,8 +31,8 @@ Expected<std::vector<Sequence>> parse_sequences(std::string_view yaml);
 /// Those of the table.
 std::vector<Sequence> sequences();
 
-/// An address for what a user may write: sim:SCENE?..., sim:ROW or sim:ROW?seed=N. Other keys after a row are appended
-/// to its own. Input errors: a seed that a row does not take.
+/// An address for what a user may write: sim:SCENE?..., sim:ROW or sim:ROW?seed=N. Other keys replace the row's own or
+/// are added. Input errors: a seed that a row does not take.
 Expected<std::string> expanded_address(std::string_view source);
 
 /// The text of bench/sequences.yaml.
