@@ -35,7 +35,7 @@ Matrix3d matrix(const std::array<double, 9>& rows) {
 TEST(Presets, AreTheFilesOfTheConfigFolder) {
   std::vector<std::string> names;
   for (const Preset& preset : presets()) names.emplace_back(preset.name);
-  EXPECT_THAT(names, testing::ElementsAre("default", "hilti2022", "kitti", "ntu4dradlm"));
+  EXPECT_THAT(names, testing::ElementsAre("default", "hilti2022", "inspection", "kitti", "ntu4dradlm"));
 }
 
 TEST(Presets, LoadAndSayWhatTheyAreFor) {
