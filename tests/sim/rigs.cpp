@@ -25,6 +25,8 @@ TEST(SimRigs, AreMountedAsTheEstimatorsPresetsSay) {
     EXPECT_LT((rig.T_I_L.translation() - known.T_I_L.translation()).norm(), 1e-6) << sim.name;
     EXPECT_LT(angle_deg(rig.T_I_C, known.T_I_C), 1e-3) << sim.name;
     EXPECT_LT((rig.T_I_C.translation() - known.T_I_C.translation()).norm(), 1e-6) << sim.name;
+    EXPECT_NEAR(rig.imu.gyro_density, known.imu.gyro_density, 1e-9) << sim.name;
+    EXPECT_NEAR(rig.imu.accel_bias_walk, known.imu.accel_bias_walk, 1e-9) << sim.name;
     EXPECT_NEAR(rig.camera->fx, known.camera->fx, 1e-9) << sim.name;
   }
 }

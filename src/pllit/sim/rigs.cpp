@@ -35,6 +35,10 @@ SimRig hilti2022() {
   R_I_L << 0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
   rig.T_I_L = pose_of(R_I_L, {-0.001, -0.00855, 0.055});
   rig.T_I_C = hilti2022_T_I_cam0();
+  rig.told_noise.gyro_density = 0.005;
+  rig.told_noise.accel_density = 0.019;
+  rig.told_noise.gyro_bias_walk = 2.66e-4;
+  rig.told_noise.accel_bias_walk = 4.3e-3;
   // I has z down; its x axis is where the camera looks.
   rig.R_B_I = exp_so3({std::numbers::pi, 0.0, 0.0});
   return rig;
@@ -51,6 +55,8 @@ SimRig ntu4dradlm() {
   rig.height_m = 1.7;
   rig.on_car = true;
   rig.accel_in_g = true;
+  rig.told_noise.gyro_density = 0.007;
+  rig.told_noise.accel_density = 0.022;
   rig.T_I_L = pose_from(SO3::Identity(), {0.05512, 0.02226, -0.0297});
   rig.T_I_C =
       pose_from(rotation_from(Eigen::Quaterniond(0.494781267106, -0.503658973323, 0.498796360175, -0.502713961799)),
@@ -79,7 +85,7 @@ Rig SimRig::known() const {
                .max_range_m = lidar.max_range_m,
                .range_sigma_m = lidar.range_sigma_m,
                .beam_sigma_rad = lidar.beam_sigma_rad};
-  rig.imu = imu.noise;
+  rig.imu = told_noise;
   rig.camera = camera();
   // A bolometer shows the scene of one time constant ago.
   if (thermal) rig.camera_delay = -from_seconds(thermal->time_constant_s);

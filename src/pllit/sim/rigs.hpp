@@ -20,6 +20,9 @@ struct SimRig {
   bool on_car = false;
   bool accel_in_g = false;  ///< as Livox's drivers publish it
   ImuModel imu;
+  /// What estimators of such rigs are configured with (config/*.yaml): more than the data sheet's noise, because it also has to
+  /// cover vibration, scale and timing.
+  ImuNoise told_noise{};
   RayLidar lidar;
   SE3 T_I_L = SE3::Identity(), T_I_C = SE3::Identity();
   std::optional<ThermalCameraModel> thermal;
