@@ -94,18 +94,19 @@ make_root() {
 }
 
 ensure_root() {
-  local stamp=$environment_root/.pllit-packages
-  [ -r "$stamp" ] && [ "$(cat "$stamp")" = "$(packages_digest)" ] && return
+  local stamp
+  stamp=$environment_root/.pllit-packages-$(packages_digest) # one for each list, so that calls with and without training's alternate freely
+  [ -e "$stamp" ] && return
   need_root "Making the Debian 13 environment on this machine"
   mkdir -p "$(dirname "$environment_root")"
   exec {lock}>"$environment_root.lock"
   flock "$lock" # a second call waits for the first and then finds the work done
-  [ -r "$stamp" ] && [ "$(cat "$stamp")" = "$(packages_digest)" ] && return
+  [ -e "$stamp" ] && return
   [ -x "$environment_root/usr/bin/apt-get" ] || make_root
   say "installing the packages of packages.txt"
   (enter_root bash -c ". '$project_root/setup/environment.sh' && install_packages") ||
     refuse "apt could not install the packages inside $environment_root; its message is above. The next call tries again."
-  packages_digest >"$stamp"
+  : >"$stamp"
   exec {lock}>&-
 }
 
