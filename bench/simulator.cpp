@@ -99,7 +99,7 @@ void report_memory(double kilometres) {
     if (metres < next_scan_m) continue;
     const auto here = [T_W_L = drive[i].T_W_I](Time) { return T_W_L; };
     const LidarRun run{.place = **place, .caster = caster, .T_W_L = here, .start = drive.front().time, .seed = 1};
-    const auto points = simulate_scan(livox_horizon(), run, 0, arena).scan.points_L.size();
+    const auto points = simulate_scan(livox_horizon(), run, 0, arena).points_L.size();
     if (next_scan_m == 1000.0 * std::floor(next_scan_m / 1000.0))
       std::printf("%10.0f %10zu %10.0f %10.1f\n", metres, points, peak_mb(), wall_s() - begin_s);
     next_scan_m += 100.0;

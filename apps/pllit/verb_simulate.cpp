@@ -40,16 +40,15 @@ struct Topics {
   PointCloud2Layout cloud;
 };
 
-Topics topics_of(const SceneTruth& scene, const std::string& cloud_time) {
+Topics topics_of(const std::string& rig, const std::string& cloud_time) {
   using Field = PointCloud2Layout::TimeField;
   Topics topics{"/imu/data", "/points", "/camera/image_raw", "/camera/counts", false, {}};
-  if (scene.rig == "hilti2022")
+  if (rig == "hilti2022")
     topics = {
         "/alphasense/imu", "/hesai/pandar", "/alphasense/cam0/image_raw", "", false, {.time_field = Field::timestamp}};
-  if (scene.rig == "ntu4dradlm")
+  if (rig == "ntu4dradlm")
     topics = {"/livox/imu", "/livox/lidar", "/thermal_cam/thermal_image", "/thermal_cam/counts", true, {}};
-  if (scene.rig == "inspection")
-    topics = {"/imu/data", "/livox/lidar", "/thermal/image_agc", "/thermal/image_raw", true, {}};
+  if (rig == "inspection") topics = {"/imu/data", "/livox/lidar", "/thermal/image_agc", "/thermal/image_raw", true, {}};
   if (cloud_time == "seconds") topics.cloud = {.time_field = Field::time, .time_unit = TimeUnit::seconds};
   if (cloud_time == "microseconds") topics.cloud = {.time_field = Field::time, .time_unit = TimeUnit::microseconds};
   return topics;
@@ -135,7 +134,7 @@ Expected<ExitCode> simulate(const Options& options) {
   if (auto done = write_tum(beside(".tum"), simulation->truth()); !done) return std::unexpected(done.error());
   if (auto done = write_biases(beside(".biases.csv"), simulation->true_biases()); !done)
     return std::unexpected(done.error());
-  Recorder recorder(*bag, topics_of(simulation->scene_truth(), options.cloud_time), options.jpeg);
+  Recorder recorder(*bag, topics_of(simulation->rig_name(), options.cloud_time), options.jpeg);
   const auto recorded = record(*simulation, recorder);
   if (auto closed = bag->close(); !closed) return std::unexpected(closed.error());
   if (!recorded) return std::unexpected(recorded.error());

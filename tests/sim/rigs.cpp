@@ -50,7 +50,7 @@ TEST(SimRigs, AreBuiltUnlikeTheirDataSheetWithinTheStatedBounds) {
     most_deg = std::max(most_deg, turn);
     least_m = std::min(least_m, shift);
     most_m = std::max(most_m, shift);
-    EXPECT_NEAR(built.camera().fx / sheet.camera().fx, 1.0, 0.003);
+    EXPECT_NEAR(built.camera()->fx / sheet.camera()->fx, 1.0, 0.003);
     EXPECT_LE(std::abs(to_seconds(built.lidar_clock)), 0.005);
     EXPECT_LE(std::abs(std::log2(built.imu.noise.gyro_density / sheet.imu.noise.gyro_density)), 1.0);
   }

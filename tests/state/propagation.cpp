@@ -11,6 +11,21 @@ namespace ix = error_index;
 using namespace std::chrono_literals;
 using test::Random;
 
+ImuNoise strong_noise() {
+  ImuNoise noise;
+  noise.gyro_density = 0.01;
+  noise.accel_density = 0.1;
+  return noise;
+}
+
+/// A random state at time 0, known exactly.
+Estimate known_start(Random& random) {
+  Estimate start;
+  start.mean = random.state();
+  start.mean.time = Time{};
+  return start;
+}
+
 /// Samples of a constant rate and specific force from time 0 on.
 std::vector<ImuSample> constant_imu(const Vector3d& gyro, const Vector3d& accel, double rate_hz, double length_s) {
   std::vector<ImuSample> imu;
@@ -88,12 +103,8 @@ TEST(Propagate, ClaimsTheSameUncertaintyAtAnySampleRate) {
 TEST(Propagate, CovarianceMatchesTheSpreadOfNoisyRuns) {
   Random random(5);
   const double rate_hz = 100.0;
-  ImuNoise noise;
-  noise.gyro_density = 0.01;
-  noise.accel_density = 0.1;
-  Estimate start;
-  start.mean = random.state();
-  start.mean.time = Time{};
+  const ImuNoise noise = strong_noise();
+  Estimate start = known_start(random);
   const auto clean = constant_imu({0.3, -0.2, 0.5}, {1.0, 0.5, 9.0}, rate_hz, 0.5);
   const auto predicted = propagate(start, clean, Time(500ms), noise).predicted;
   Matrix18 spread = Matrix18::Zero();
@@ -116,12 +127,8 @@ TEST(Sweep, CovariancesMatchTheSpreadOfNoisyRuns) {
   // error would put the end, and the error of the end itself.
   Random random(6);
   const double rate_hz = 100.0;
-  ImuNoise noise;
-  noise.gyro_density = 0.01;
-  noise.accel_density = 0.1;
-  Estimate start;
-  start.mean = random.state();
-  start.mean.time = Time{};
+  const ImuNoise noise = strong_noise();
+  Estimate start = known_start(random);
   start.mean.v_W = Vector3d(5.0, 0.0, 0.0);
   const Vector3d gyro(0.3, -0.2, 0.5), accel(1.0, 0.5, 9.0);
   const auto clean = constant_imu(gyro, accel, rate_hz, 0.3);
@@ -159,9 +166,7 @@ TEST(Sweep, CovariancesMatchTheSpreadOfNoisyRuns) {
 
 TEST(Sweep, OfAnInstantLeavesTheUpdateAsItIs) {
   Random random(7);
-  Estimate start;
-  start.mean = random.state();
-  start.mean.time = Time{};
+  Estimate start = known_start(random);
   start.covariance = 0.01 * Matrix18::Identity();
   const auto imu = constant_imu({0.3, -0.2, 0.5}, {1.0, 0.5, 9.0}, 100.0, 0.1);
   const Propagation motion = propagate(start, imu, Time(100ms), ImuNoise{});

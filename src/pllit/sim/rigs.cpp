@@ -15,8 +15,6 @@ ImuModel known_imu(std::string_view name) {
   return std::move(*model);
 }
 
-SE3 pose_of(const Matrix3d& R, const Vector3d& t) { return pose_from(rotation_from(Eigen::Quaterniond(R)), t); }
-
 /// A camera that looks along x of a frame with z up: x to the right, y down, z forward.
 Matrix3d looking_ahead() {
   Matrix3d R;
@@ -31,9 +29,7 @@ SimRig hilti2022() {
              .lidar = pandar_xt32(),
              .thermal = {},
              .visible = hilti2022_cam0()};
-  Matrix3d R_I_L;
-  R_I_L << 0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
-  rig.T_I_L = pose_of(R_I_L, {-0.001, -0.00855, 0.055});
+  rig.T_I_L = hilti2022_T_I_lidar();
   rig.T_I_C = hilti2022_T_I_cam0();
   rig.told_noise.gyro_density = 0.005;
   rig.told_noise.accel_density = 0.019;
@@ -69,7 +65,7 @@ SimRig inspection() {
   SimRig rig{
       .name = "inspection", .imu = known_imu("hi71"), .lidar = livox_mid360(), .thermal = botu_tb640(), .visible = {}};
   rig.T_I_L = pose_from(SO3::Identity(), {0.02, 0.0, 0.12});
-  rig.T_I_C = pose_of(looking_ahead(), {0.08, 0.0, 0.07});
+  rig.T_I_C = pose_from(rotation_from(Eigen::Quaterniond(looking_ahead())), {0.08, 0.0, 0.07});
   return rig;
 }
 

@@ -20,8 +20,8 @@ struct SimRig {
   bool on_car = false;
   bool accel_in_g = false;  ///< as Livox's drivers publish it
   ImuModel imu;
-  /// What estimators of such rigs are configured with (config/*.yaml): more than the data sheet's noise, because it also has to
-  /// cover vibration, scale and timing.
+  /// What estimators of such rigs are configured with (config/*.yaml): more than the data sheet's noise, because it
+  /// also has to cover vibration, scale and timing.
   ImuNoise told_noise{};
   RayLidar lidar;
   SE3 T_I_L = SE3::Identity(), T_I_C = SE3::Identity();
@@ -29,7 +29,10 @@ struct SimRig {
   std::optional<VisibleCameraModel> visible;
   Duration lidar_clock{0}, camera_clock{0};  ///< what the sensor's stamps are late by against the IMU's
 
-  const Camera& camera() const { return thermal ? thermal->camera : visible->camera; }
+  /// Nothing on a rig without a camera.
+  std::optional<Camera> camera() const {
+    return thermal ? std::optional(thermal->camera) : visible ? std::optional(visible->camera) : std::nullopt;
+  }
   /// What an estimator is told: the same for every seed.
   Rig known() const;
 };

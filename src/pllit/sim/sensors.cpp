@@ -59,10 +59,9 @@ class RayLidarSensor : public SimSensor {
   Time due() const override { return run_.start + (index_ + 1) * lidar_.pattern.scan_period; }
   std::vector<SensorEvent> take() override {
     const Time end = due();
-    LineScan made = simulate_scan(lidar_, run_, index_++, around_.arena);
-    made.scan.rings.assign(made.line.begin(), made.line.end());
-    made.scan.start += clock_;
-    return {{end, std::move(made.scan)}};
+    LidarScan scan = simulate_scan(lidar_, run_, index_++, around_.arena);
+    scan.start += clock_;
+    return {{end, std::move(scan)}};
   }
 
  private:

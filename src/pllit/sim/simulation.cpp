@@ -88,12 +88,19 @@ FindingSpec finding_of(const SimConfig& config) {
           .by_K = config.finding_K};
 }
 
-PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motion& motion, Time end) {
-  PlaceConfig place{.kind = place_kind(config.scene), .seed = config.seed, .path_W = {}};
-  place.duration_s = to_seconds(end - motion.start());
-  const int steps = std::max(2, static_cast<int>(place.duration_s / 0.2));
+/// Where the rig goes, evenly in time.
+std::vector<Vector3d> path_of(const Motion& motion, Time end) {
+  const double duration_s = to_seconds(end - motion.start());
+  const int steps = std::max(2, static_cast<int>(duration_s / 0.2));
+  std::vector<Vector3d> path_W;
   for (int i = 0; i <= steps; ++i)
-    place.path_W.push_back(motion.at(motion.start() + from_seconds(place.duration_s * i / steps)).T_W_I.translation());
+    path_W.push_back(motion.at(motion.start() + from_seconds(duration_s * i / steps)).T_W_I.translation());
+  return path_W;
+}
+
+PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motion& motion, Time end) {
+  PlaceConfig place{.kind = place_kind(config.scene), .seed = config.seed, .path_W = path_of(motion, end)};
+  place.duration_s = to_seconds(end - motion.start());
   place.height_m = rig.height_m;
   place.clearance_m = rig.on_car ? 2.5 : 0.6;
   place.light = config.day ? Light::day : Light::night;
@@ -105,12 +112,6 @@ PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motio
                          {.kind = DistractorSpec::Kind::hot_radiator, .at_s = 0.0}};
   }
   return place;
-}
-
-SimRig refined(SimRig rig, const SimConfig& config, const ImuModel* imu) {
-  if (imu) rig.imu = *imu;
-  // Only as built is a rig known that has no errors.
-  return config.ideal ? without_errors(rig) : as_built(rig, config.seed);
 }
 
 SceneObject object_of(const Actor& actor, const SimConfig& config, const std::vector<Vector3d>& path_W) {
@@ -173,26 +174,22 @@ Expected<Simulation> Simulation::make(const SimConfig& config, const std::option
   if (is_box(config.scene)) {
     BoxScene scene = box_scene(config);
     SimRig built{.name = "boxes", .imu = scene.imu, .lidar = {}, .thermal = {}, .visible = {}};
-    SimRig known = built;
-    known.visible.emplace();  // a box rig has no camera; known() asks for one
-    auto parts = std::make_unique<Parts>(config, ChosenMotion{scene.motion, {}}, std::move(known), std::move(built));
+    auto parts = std::make_unique<Parts>(config, ChosenMotion{scene.motion, {}}, built, built);
     furnish_boxes(*parts, std::move(scene));
     return Simulation(std::move(parts));
   }
   if (config.motion.empty() == path.has_value())
     return failure(path ? "a path was given that the simulation does not name"
                         : "the simulation names a motion's file that was not read");
-  std::optional<ImuModel> imu;
+  SimRig known = sim_rig(rig_for(config));
   if (!config.imu.empty()) {
     auto model = imu_model(config.imu);
     if (!model) return std::unexpected(model.error());
-    imu = std::move(*model);
+    known.imu = std::move(*model);
   }
-  SimRig known = sim_rig(rig_for(config));
-  if (imu) known.imu = *imu;
   auto motion = choose_motion(config, known, path);
   if (!motion) return std::unexpected(motion.error());
-  SimRig built = refined(known, config, imu ? &*imu : nullptr);
+  SimRig built = config.ideal ? without_errors(known) : as_built(known, config.seed);
   auto parts = std::make_unique<Parts>(config, std::move(*motion), std::move(known), std::move(built));
   if (auto furnished = furnish_world(*parts); !furnished) return std::unexpected(furnished.error());
   return Simulation(std::move(parts));
@@ -218,13 +215,16 @@ double Simulation::progress() const {
 }
 
 const Rig& Simulation::rig() const { return parts_->rig; }
+const std::string& Simulation::rig_name() const { return parts_->known.name; }
 const Motion& Simulation::motion() const { return parts_->motion; }
 const PlanesWorld& Simulation::boxes() const { return *parts_->boxes; }
 
 Trajectory Simulation::truth() const {
   Trajectory truth;
-  for (ImuStream imu = parts_->fresh_imu(); imu.next_time() <= parts_->end; imu.next(parts_->motion))
-    truth.push_back({imu.next_time(), parts_->motion.at(imu.next_time()).T_W_I});
+  const Motion& motion = parts_->motion;
+  Time time = motion.start();
+  for (std::int64_t i = 0; time <= parts_->end; time = imu_time(motion.start(), parts_->built.imu.rate_hz, ++i))
+    truth.push_back({time, motion.at(time).T_W_I});
   return truth;
 }
 
@@ -245,13 +245,13 @@ SceneTruth Simulation::scene_truth() const {
   truth.fit = parts.fit;
   truth.imu_known = parts.rig.imu;
   truth.imu = parts.built.imu.noise;
-  const std::vector<Vector3d> path_W = place_config(parts.config, parts.known, parts.motion, parts.end).path_W;
+  const std::vector<Vector3d> path_W = path_of(parts.motion, parts.end);
   for (std::size_t i = 1; i < path_W.size(); ++i) truth.length_m += (path_W[i] - path_W[i - 1]).norm();
   if (!parts.around) return truth;
   truth.T_I_C_known = parts.known.T_I_C;
   truth.T_I_C = parts.built.T_I_C;
-  truth.camera_known = parts.known.camera();
-  truth.camera = parts.built.camera();
+  truth.camera_known = *parts.known.camera();
+  truth.camera = *parts.built.camera();
   truth.lidar_clock = parts.built.lidar_clock;
   truth.camera_clock = parts.built.camera_clock;
   const std::vector<Actor>& actors = parts.around->place->actors();

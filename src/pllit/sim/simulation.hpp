@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -40,6 +41,7 @@ class Simulation : public EventSource {
   /// What the estimator may know: extrinsics, noise and ranges. The same for an ideal simulation, whose sensors are
   /// better.
   const Rig& rig() const;
+  const std::string& rig_name() const;
   const Motion& motion() const;
   /// The boxes of a box scene.
   const PlanesWorld& boxes() const;

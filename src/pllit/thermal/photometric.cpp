@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <iterator>
 
 namespace pllit {
 namespace {
@@ -17,14 +17,16 @@ double tukey_weight(double residual, double width) {
   return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
 }
 
-double polyline_at(const std::vector<double>& x, const std::vector<double>& y, double at) {
-  if (x.empty()) return 0.0;
-  const auto after = std::ranges::upper_bound(x, at);
-  if (after == x.begin()) return y.front();
-  if (after == x.end()) return y.back();
-  const auto i = static_cast<std::size_t>(after - x.begin());
-  const double s = (at - x[i - 1]) / (x[i] - x[i - 1]);
-  return (1.0 - s) * y[i - 1] + s * y[i];
+/// Where a grey lies between knots: weight 1 - s on `left`, s on the one behind it; at an end for greys beyond it.
+struct OnKnots {
+  std::size_t left;
+  double s;
+};
+
+OnKnots on_knots(const std::vector<double>& knots, double raw) {
+  const auto after = std::ranges::upper_bound(knots, raw) - knots.begin();
+  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after, 1, std::ssize(knots) - 1));
+  return {i - 1, std::clamp((raw - knots[i - 1]) / (knots[i] - knots[i - 1]), 0.0, 1.0)};
 }
 
 struct Residuals {
@@ -45,17 +47,14 @@ Residuals residuals_of(std::span<const GreyPair> pairs, const GreyCurve& curve, 
   return result;
 }
 
-double spread(std::span<const GreyPair> pairs, const GreyCurve& curve, double width) {
-  double weights = 0.0, sum = 0.0, squares = 0.0;
+double spread_of_raw(std::span<const GreyPair> pairs) {
+  double sum = 0.0, squares = 0.0;
   for (const GreyPair& pair : pairs) {
-    const double w = tukey_weight(pair.reference - curve(pair.current), width);
-    weights += w;
-    sum += w * pair.current;
-    squares += w * pair.current * pair.current;
+    sum += pair.current;
+    squares += pair.current * pair.current;
   }
-  if (weights <= 0.0) return 0.0;
-  const double mean = sum / weights;
-  return std::sqrt(std::max(0.0, squares / weights - mean * mean));
+  const double n = static_cast<double>(pairs.size()), mean = sum / n;
+  return std::sqrt(std::max(0.0, squares / n - mean * mean));
 }
 
 /// Sums of one round over the pairs, with the weights that the last curve gives them.
@@ -187,14 +186,11 @@ GreyCurve with_polyline(std::span<const GreyPair> pairs, const GreyCurve& affine
     for (const GreyPair& pair : pairs) {
       const double w = tukey_weight(pair.reference - curve(pair.current), std::max(width, config.loss_grey));
       if (w == 0.0) continue;
-      const double raw = std::clamp<double>(pair.current, curve.knots.front(), curve.knots.back());
-      const auto after =
-          std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(curve.knots, raw) - curve.knots.begin(), 1, n - 1);
-      const auto i = static_cast<std::size_t>(after);
-      const double s = (raw - curve.knots[i - 1]) / (curve.knots[i] - curve.knots[i - 1]);
+      const OnKnots at = on_knots(curve.knots, pair.current);
+      const auto left = static_cast<Eigen::Index>(at.left);
       Eigen::VectorXd row = Eigen::VectorXd::Zero(n);
-      row[after - 1] = 1.0 - s;
-      row[after] = s;
+      row[left] = 1.0 - at.s;
+      row[left + 1] = at.s;
       A += w * row * row.transpose();
       b += w * (pair.reference - affine(pair.current)) * row;
     }
@@ -207,7 +203,12 @@ GreyCurve with_polyline(std::span<const GreyPair> pairs, const GreyCurve& affine
 
 }  // namespace
 
-double GreyCurve::operator()(double raw) const { return gain * raw + bias + polyline_at(knots, offsets, raw); }
+double GreyCurve::operator()(double raw) const {
+  const double line = gain * raw + bias;
+  if (knots.empty()) return line;
+  const OnKnots at = on_knots(knots, raw);
+  return line + (1.0 - at.s) * offsets[at.left] + at.s * offsets[at.left + 1];
+}
 
 cv::Mat corrected(const cv::Mat& raw, const GreyCurve& curve) {
   std::array<float, 256> table{};
@@ -232,8 +233,7 @@ PhotometricFit fit_grey_curve(std::span<const GreyPair> pairs, const GreyCurve& 
   PhotometricFit fit{.curve = before, .kind = PhotometricFit::Kind::kept, .pairs = static_cast<int>(usable.size())};
   if (fit.pairs < config.min_pairs) return fit;
 
-  const double no_width = std::numeric_limits<double>::max();
-  const bool gain_too = spread(usable, before, no_width) >= config.min_spread_grey;
+  const bool gain_too = spread_of_raw(usable) >= config.min_spread_grey;
   const GreyCurve affine = best_affine(usable, before, gain_too, config);
   const Residuals residuals = residuals_of(usable, affine, config.loss_grey);
   if (affine.gain < config.least_gain || affine.gain > config.most_gain || residuals.inliers < config.min_pairs)

@@ -18,7 +18,7 @@ struct GreyPair {
 struct GreyCurve {
   double gain = 1.0;
   double bias = 0.0;            ///< grey levels
-  std::vector<double> knots;    ///< raw greys, ascending; none for an affine curve
+  std::vector<double> knots;    ///< raw greys, ascending, at least two; none for an affine curve
   std::vector<double> offsets;  ///< added at the knots, linear between them, constant beyond
 
   double operator()(double raw) const;

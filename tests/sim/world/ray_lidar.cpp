@@ -29,8 +29,8 @@ std::function<SE3(Time)> standing(const SE3& T_W_L) {
   return [T_W_L](Time) { return T_W_L; };
 }
 
-LineScan scan_of(const ReadyPlace& place, const RayLidar& lidar, const std::function<SE3(Time)>& T_W_L,
-                 std::int64_t index = 0, int threads = 1, std::uint64_t seed = 1) {
+LidarScan scan_of(const ReadyPlace& place, const RayLidar& lidar, const std::function<SE3(Time)>& T_W_L,
+                  std::int64_t index = 0, int threads = 1, std::uint64_t seed = 1) {
   RayCaster caster(place, 150.0);
   Arena arena(threads);
   return simulate_scan(lidar, {.place = place, .caster = caster, .T_W_L = T_W_L, .start = kStart, .seed = seed}, index,
@@ -57,16 +57,16 @@ TEST_P(EveryRayLidar, WithoutErrorsPointsLieOnTheSurfacesAlsoKilometresFromTheOr
   for (const Vector3d& middle_W : {Vector3d(0.0, 0.0, 0.0), Vector3d(2100.0, -2100.0, 40.0)}) {
     ReadyPlace place = testing::random_place(7, middle_W);
     place.actors_.clear();
-    const LineScan result = scan_of(place, without_errors(lidar()), walk(middle_W), 2);
-    ASSERT_GT(result.scan.points_L.size(), 1000U);
-    ASSERT_EQ(result.line.size(), result.scan.points_L.size());
-    ASSERT_EQ(result.scan.offsets.size(), result.scan.points_L.size());
-    ASSERT_EQ(result.scan.intensity.size(), result.scan.points_L.size());
+    const LidarScan result = scan_of(place, without_errors(lidar()), walk(middle_W), 2);
+    ASSERT_GT(result.points_L.size(), 1000U);
+    ASSERT_EQ(result.rings.size(), result.points_L.size());
+    ASSERT_EQ(result.offsets.size(), result.points_L.size());
+    ASSERT_EQ(result.intensity.size(), result.points_L.size());
     const EveryTriangle twin(place, place.tiles_near(middle_W, 1000.0), 0.0);
     const auto T_W_L = walk(middle_W);
-    for (std::size_t i = 0; i < result.scan.points_L.size(); i += 37) {
-      const SE3 pose = T_W_L(result.scan.start + result.scan.offsets[i]);
-      const Vector3d p_L = result.scan.points_L[i].cast<double>();
+    for (std::size_t i = 0; i < result.points_L.size(); i += 37) {
+      const SE3 pose = T_W_L(result.start + result.offsets[i]);
+      const Vector3d p_L = result.points_L[i].cast<double>();
       const auto surface =
           twin.cast({.origin_W = pose.translation(), .direction_W = pose.rotation() * p_L.normalized()}, 1000.0);
       ASSERT_TRUE(surface);
@@ -80,30 +80,30 @@ TEST_P(EveryRayLidar, WithoutErrorsPointsLieOnTheSurfacesAlsoKilometresFromTheOr
 
 TEST_P(EveryRayLidar, TheSameSeedGivesTheSameBytesWithOneThreadAndTwo) {
   const ReadyPlace place = testing::random_place(3, Vector3d::Zero());
-  const LineScan one = scan_of(place, lidar(), walk(Vector3d::Zero()), 5, 1);
-  const LineScan two = scan_of(place, lidar(), walk(Vector3d::Zero()), 5, 2);
-  const LineScan other = scan_of(place, lidar(), walk(Vector3d::Zero()), 5, 1, 2);
-  ASSERT_GT(one.scan.points_L.size(), 1000U);
-  ASSERT_EQ(one.scan.points_L.size(), two.scan.points_L.size());
-  const auto bytes = one.scan.points_L.size() * sizeof(Vector3f);
-  EXPECT_EQ(std::memcmp(one.scan.points_L.data(), two.scan.points_L.data(), bytes), 0);
-  EXPECT_EQ(one.scan.offsets, two.scan.offsets);
-  EXPECT_EQ(one.scan.intensity, two.scan.intensity);
-  EXPECT_EQ(one.line, two.line);
-  EXPECT_NE(one.scan.points_L.front(), other.scan.points_L.front());
+  const LidarScan one = scan_of(place, lidar(), walk(Vector3d::Zero()), 5, 1);
+  const LidarScan two = scan_of(place, lidar(), walk(Vector3d::Zero()), 5, 2);
+  const LidarScan other = scan_of(place, lidar(), walk(Vector3d::Zero()), 5, 1, 2);
+  ASSERT_GT(one.points_L.size(), 1000U);
+  ASSERT_EQ(one.points_L.size(), two.points_L.size());
+  const auto bytes = one.points_L.size() * sizeof(Vector3f);
+  EXPECT_EQ(std::memcmp(one.points_L.data(), two.points_L.data(), bytes), 0);
+  EXPECT_EQ(one.offsets, two.offsets);
+  EXPECT_EQ(one.intensity, two.intensity);
+  EXPECT_EQ(one.rings, two.rings);
+  EXPECT_NE(one.points_L.front(), other.points_L.front());
 }
 
 TEST_P(EveryRayLidar, PointsComeInOrderOfTimeWithinTheRangesOfTheModel) {
   const ReadyPlace place = testing::random_place(2, Vector3d::Zero());
-  const LineScan result = scan_of(place, lidar(), walk(Vector3d::Zero()), 1);
-  EXPECT_EQ(result.scan.start, kStart + std::chrono::milliseconds(100));
-  EXPECT_TRUE(std::ranges::is_sorted(result.scan.offsets));
-  for (std::size_t i = 0; i < result.scan.points_L.size(); ++i) {
-    ASSERT_GE(result.scan.points_L[i].norm(), lidar().min_range_m - 1e-4);
-    ASSERT_LE(result.scan.points_L[i].norm(), lidar().max_range_m + 1e-4);
-    ASSERT_GE(result.scan.intensity[i], 0.0F);
-    ASSERT_LE(result.scan.intensity[i], 255.0F);
-    ASSERT_EQ(result.scan.intensity[i], std::round(result.scan.intensity[i]));
+  const LidarScan result = scan_of(place, lidar(), walk(Vector3d::Zero()), 1);
+  EXPECT_EQ(result.start, kStart + std::chrono::milliseconds(100));
+  EXPECT_TRUE(std::ranges::is_sorted(result.offsets));
+  for (std::size_t i = 0; i < result.points_L.size(); ++i) {
+    ASSERT_GE(result.points_L[i].norm(), lidar().min_range_m - 1e-4);
+    ASSERT_LE(result.points_L[i].norm(), lidar().max_range_m + 1e-4);
+    ASSERT_GE(result.intensity[i], 0.0F);
+    ASSERT_LE(result.intensity[i], 255.0F);
+    ASSERT_EQ(result.intensity[i], std::round(result.intensity[i]));
   }
 }
 
@@ -113,10 +113,10 @@ TEST_P(EveryRayLidar, OnAFacingWallTheRangeNoiseIsTheModels) {
   place.surfaces_[0].reflectivity = 0.8F;
   place.tiles_.resize(1);
   testing::add_sheet(place.tiles_[0].mesh, Vector3d(10, -10, -10), 20 * Vector3d::UnitY(), 20 * Vector3d::UnitZ(), 0);
-  const LineScan result = scan_of(place, lidar(), standing(SE3::Identity()));
+  const LidarScan result = scan_of(place, lidar(), standing(SE3::Identity()));
   double sum2 = 0.0, sum = 0.0;
   int count = 0;
-  for (const Vector3f& p : result.scan.points_L) {
+  for (const Vector3f& p : result.points_L) {
     if (std::abs(p.y()) > 2.0F || std::abs(p.z()) > 2.0F) continue;
     // Along the beam; at up to 16 degrees the beam noise adds little.
     const Vector3d p_L = p.cast<double>();
@@ -143,9 +143,9 @@ TEST(RayLidar, MixedPointsLieOnlyAtEdgesOfDepth) {
   RayLidar lidar = pandar_xt32();
   lidar.range_sigma_m = lidar.beam_sigma_rad = 0.0;
   lidar.range_step_m = 0.0;
-  const LineScan result = scan_of(place, lidar, standing(SE3::Identity()));
+  const LidarScan result = scan_of(place, lidar, standing(SE3::Identity()));
   int mixed = 0, pure = 0;
-  for (const Vector3f& p : result.scan.points_L) {
+  for (const Vector3f& p : result.points_L) {
     const bool between = p.x() > 9.72F && p.x() < 9.98F;
     (between ? mixed : pure) += 1;
     if (between) {
@@ -156,7 +156,7 @@ TEST(RayLidar, MixedPointsLieOnlyAtEdgesOfDepth) {
   EXPECT_GT(mixed, 5);
   EXPECT_GT(pure, 100 * mixed);
   lidar.divergence_left_rad = lidar.divergence_up_rad = 0.0;
-  for (const Vector3f& p : scan_of(place, lidar, standing(SE3::Identity())).scan.points_L)
+  for (const Vector3f& p : scan_of(place, lidar, standing(SE3::Identity())).points_L)
     ASSERT_TRUE(p.x() < 9.701F || p.x() > 9.999F) << "without divergence nothing is mixed";
 }
 
@@ -168,9 +168,9 @@ TEST(RayLidar, ReturnsGetRarerWithRangeAndGrazing) {
   place.tiles_.resize(1);
   testing::add_sheet(place.tiles_[0].mesh, Vector3d(-150, -150, -1.5), 300 * Vector3d::UnitX(), 300 * Vector3d::UnitY(),
                      0);
-  const LineScan result = scan_of(place, pandar_xt32(), standing(SE3::Identity()));
+  const LidarScan result = scan_of(place, pandar_xt32(), standing(SE3::Identity()));
   std::vector<int> points(32, 0);
-  for (const std::uint8_t line : result.line) ++points[line];
+  for (const std::uint16_t line : result.rings) ++points[line];
   EXPECT_GT(points[31], 1990) << "16 degrees down, 5.4 m away";
   EXPECT_LT(points[16], 20) << "1 degree down, 86 m away";
   for (std::size_t line = 17; line < 32; ++line) EXPECT_GE(points[line] + 60, points[line - 1]) << line;
@@ -184,7 +184,7 @@ TEST(RayLidar, DarkWallsAreSeenLessFarThanBrightOnes) {
     place.tiles_.resize(1);
     const Vector3d corner(distance_m, -20.0, -20.0);
     testing::add_sheet(place.tiles_[0].mesh, corner, 40 * Vector3d::UnitY(), 40 * Vector3d::UnitZ(), 0);
-    return scan_of(place, livox_mid360(), standing(SE3::Identity())).scan.points_L.size();
+    return scan_of(place, livox_mid360(), standing(SE3::Identity())).points_L.size();
   };
   EXPECT_GT(seen(30.0, 0.1F), 100U);
   EXPECT_LT(seen(60.0, 0.1F), 10U);
@@ -192,14 +192,14 @@ TEST(RayLidar, DarkWallsAreSeenLessFarThanBrightOnes) {
 }
 
 TEST(RayLidar, IntensityIsReflectivityTimesTheCosineOfIncidence) {
-  const LineScan result = scan_of(room(0.6F), pandar_xt32(), standing(pose_from(SO3::Identity(), Vector3d(0, 0, 2))));
+  const LidarScan result = scan_of(room(0.6F), pandar_xt32(), standing(pose_from(SO3::Identity(), Vector3d(0, 0, 2))));
   int checked = 0;
-  for (std::size_t i = 0; i < result.scan.points_L.size(); ++i) {
-    const Vector3d p = result.scan.points_L[i].cast<double>();
+  for (std::size_t i = 0; i < result.points_L.size(); ++i) {
+    const Vector3d p = result.points_L[i].cast<double>();
     if (std::abs(p.y() - 8.0) > 0.04 || std::abs(p.x()) > 9.5 || p.z() < -1.9 || p.z() > 2.9) continue;
     ++checked;
     const double expected = 60.0 * p.y() / p.norm();
-    ASSERT_NEAR(result.scan.intensity[i], expected, 0.06 * expected + 0.6);
+    ASSERT_NEAR(result.intensity[i], expected, 0.06 * expected + 0.6);
   }
   EXPECT_GT(checked, 5000);
 }
@@ -213,12 +213,12 @@ TEST(RayLidar, EveryPulseSeesMovingThingsWhereTheyAreAtItsOwnTime) {
   car.path = {{.at_s = 0.0, .T_W_O = pose_from(SO3::Identity(), Vector3d(-20, 6, 0))},
               {.at_s = 2.0, .T_W_O = pose_from(SO3::Identity(), Vector3d(20, 6, 0))}};
   place.actors_.push_back(car);
-  const LineScan result = scan_of(place, without_errors(livox_mid360()), standing(SE3::Identity()), 9);
-  ASSERT_GT(result.scan.points_L.size(), 100U);
+  const LidarScan result = scan_of(place, without_errors(livox_mid360()), standing(SE3::Identity()), 9);
+  ASSERT_GT(result.points_L.size(), 100U);
   double first_m = 1e9, last_m = -1e9;
-  for (std::size_t i = 0; i < result.scan.points_L.size(); ++i) {
-    const double middle_m = -20.0 + 20.0 * (0.9 + to_seconds(result.scan.offsets[i]));
-    ASSERT_LT(std::abs(result.scan.points_L[i].x() - middle_m), 2.0 + 20.0 * 0.0026) << "5 ms at a time";
+  for (std::size_t i = 0; i < result.points_L.size(); ++i) {
+    const double middle_m = -20.0 + 20.0 * (0.9 + to_seconds(result.offsets[i]));
+    ASSERT_LT(std::abs(result.points_L[i].x() - middle_m), 2.0 + 20.0 * 0.0026) << "5 ms at a time";
     first_m = std::min(first_m, middle_m);
     last_m = std::max(last_m, middle_m);
   }

@@ -55,13 +55,17 @@ VisibleCameraModel hilti2022_cam0() {
   return model;
 }
 
-SE3 hilti2022_T_I_cam0() {
-  Matrix3d R_I_L, R_C_L;
+SE3 hilti2022_T_I_lidar() {
+  Matrix3d R_I_L;
   R_I_L << 0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
+  return pose_from(rotation_from(Eigen::Quaterniond(R_I_L)), {-0.001, -0.00855, 0.055});
+}
+
+SE3 hilti2022_T_I_cam0() {
+  Matrix3d R_C_L;
   R_C_L << -0.999926, -0.00670802, 0.0101073, -0.0100912, -0.00242564, -0.999946, 0.00673218, -0.999975, 0.00235777;
-  const SE3 T_I_L = pose_from(rotation_from(Eigen::Quaterniond(R_I_L)), {-0.001, -0.00855, 0.055});
   const SE3 T_C_L = pose_from(rotation_from(Eigen::Quaterniond(R_C_L)), {-0.0549762, 0.0675401, -0.0520599});
-  return T_I_L * T_C_L.inverse();
+  return hilti2022_T_I_lidar() * T_C_L.inverse();
 }
 
 }  // namespace pllit

@@ -19,5 +19,7 @@ ThermalCameraModel ntu4dradlm_thermal();
 VisibleCameraModel hilti2022_cam0();
 /// T_I_C of that camera: IMU from LiDAR and camera from LiDAR as FAST-LIVO2 uses them.
 SE3 hilti2022_T_I_cam0();
+/// The organisers' IMU <- LiDAR of that rig.
+SE3 hilti2022_T_I_lidar();
 
 }  // namespace pllit

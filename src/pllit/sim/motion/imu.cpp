@@ -35,6 +35,10 @@ ImuSample exact_imu(const MotionState& state, Time time) {
   return {time, state.omega_I, state.T_W_I.asSO3().inverse().act(specific_force_W)};
 }
 
+Time imu_time(Time start, double rate_hz, std::int64_t index) {
+  return start + from_seconds(static_cast<double>(index) / rate_hz);
+}
+
 ImuStream::ImuStream(Time start, const ImuModel& model, std::uint64_t seed, const std::optional<ImuBias>& first_bias)
     : start_(start), model_(model), bias_random_(seed, 20), white_random_(seed, 21) {
   assert(model.rate_hz >= 10.0 && model.rate_hz <= 4000.0);
@@ -45,7 +49,7 @@ ImuStream::ImuStream(Time start, const ImuModel& model, std::uint64_t seed, cons
   accel_distortion_ = distortion(model.accel_scale_sigma, model.misalignment_sigma_rad, distortion_random);
 }
 
-Time ImuStream::next_time() const { return start_ + from_seconds(static_cast<double>(index_) / model_.rate_hz); }
+Time ImuStream::next_time() const { return imu_time(start_, model_.rate_hz, index_); }
 
 ImuSample ImuStream::next(const Motion& motion) {
   const double root_rate = std::sqrt(model_.rate_hz);

@@ -41,6 +41,9 @@ struct ImuModel {
 /// an average over the sample interval.
 ImuSample exact_imu(const MotionState& state, Time time);
 
+/// When sample `index` is taken.
+Time imu_time(Time start, double rate_hz, std::int64_t index);
+
 /// Samples of one IMU in time order, from the start of a motion on: truth times scale and misalignment, plus bias and
 /// noise, then saturated, then rounded to whole counts. White noise of continuous density d has the standard deviation
 /// d sqrt(rate) in each sample; biases walk by a normal step of walk / sqrt(rate) from sample to sample.

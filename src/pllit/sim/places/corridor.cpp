@@ -13,7 +13,7 @@ using Eigen::Vector3f;
 using shapes::panel;
 
 constexpr double kBeyond_m = 130.0;  // the end walls are beyond a LiDAR's reach from everywhere on the path
-constexpr double kPiece_m = 6.0;    // surfaces are cut into pieces so that tiles stay small
+constexpr double kPiece_m = 6.0;     // surfaces are cut into pieces so that tiles stay small
 
 struct Shell {
   float from_x, to_x, low_y, high_y, height;
@@ -125,13 +125,8 @@ Expected<PlaceParts> make_corridor(const PlaceConfig& config) {
   add_flush_details(shell, scene, random);
   furnish_ends(shell, scene, random);
 
-  PlaceParts parts;
-  parts.surfaces = palette(config.seed, config.light == Light::day);
-  parts.climate = indoor_climate(config.light);
   const Eigen::AlignedBox2d box(Vector2d(shell.from_x, shell.low_y), Vector2d(shell.to_x, shell.high_y));
-  parts.actors = walkers_inside(config, box, plan);
-  scene.build(parts);
-  return parts;
+  return indoors(config, walkers_inside(config, box, plan), scene);
 }
 
 }  // namespace pllit

@@ -199,13 +199,7 @@ Expected<PlaceParts> make_plant(const PlaceConfig& config) {
   add_walkway(hall, plan, scene);
   add_markings(site, scene);
   for (Actor& walker : walkers_inside(config, inner, plan)) actors->push_back(std::move(walker));
-
-  PlaceParts parts;
-  parts.surfaces = palette(config.seed, config.light == Light::day);
-  parts.climate = indoor_climate(config.light);
-  parts.actors = std::move(*actors);
-  scene.build(parts);
-  return parts;
+  return indoors(config, std::move(*actors), scene);
 }
 
 }  // namespace pllit

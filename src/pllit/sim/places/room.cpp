@@ -169,13 +169,7 @@ Expected<PlaceParts> make_room(const PlaceConfig& config) {
     furnish_middle(room, plan, scene, random);
   }
   for (Actor& walker : walkers_inside(config, floor.box, plan)) actors->push_back(std::move(walker));
-
-  PlaceParts parts;
-  parts.surfaces = palette(config.seed, config.light == Light::day);
-  parts.climate = indoor_climate(config.light);
-  parts.actors = std::move(*actors);
-  scene.build(parts);
-  return parts;
+  return indoors(config, std::move(*actors), scene);
 }
 
 }  // namespace pllit

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pllit {
 namespace {
@@ -36,6 +37,8 @@ class AssembledPlace final : public Place {
 
 std::unique_ptr<Place> assembled(PlaceParts parts) { return std::make_unique<AssembledPlace>(std::move(parts)); }
 
+namespace {
+
 Climate indoor_climate(Light light) {
   Climate climate;
   climate.air_K = 294.15;
@@ -43,6 +46,17 @@ Climate indoor_climate(Light light) {
   climate.sky_K = 273.15;
   climate.ambient_light = light == Light::day ? 0.6 : 0.005;
   return climate;
+}
+
+}  // namespace
+
+PlaceParts indoors(const PlaceConfig& config, std::vector<Actor> actors, const SceneBuilder& scene) {
+  PlaceParts parts;
+  parts.surfaces = palette(config.seed, config.light == Light::day);
+  parts.climate = indoor_climate(config.light);
+  parts.actors = std::move(actors);
+  scene.build(parts);
+  return parts;
 }
 
 Climate outdoor_climate(Light light, std::uint64_t seed) {

@@ -26,8 +26,7 @@ struct PlaceParts {
 
 std::unique_ptr<Place> assembled(PlaceParts parts);
 
-/// Air, sky and light.
-Climate indoor_climate(Light light);
+/// Air, sky and light outdoors.
 Climate outdoor_climate(Light light, std::uint64_t seed);
 
 /// Collects pieces given in P and sorts them into tiles.
@@ -70,6 +69,9 @@ class FloorPlan {
   const Site& site_;
   std::vector<Footprint> taken_;
 };
+
+/// A place under a roof: lit by its lamps by day and dark by night, its air and its pieces.
+PlaceParts indoors(const PlaceConfig& config, std::vector<Actor> actors, const SceneBuilder& scene);
 
 Eigen::AlignedBox2d footprint(const Eigen::Vector2d& centre, double size_x, double size_y);
 

@@ -212,12 +212,7 @@ Expected<PlaceParts> make_stairs(const PlaceConfig& config) {
       y(0.0F, static_cast<float>(well.sizes().y()), 0.0F);
   scene.add_ground(panel(point(low, -0.4), x, y, {Material::screed}));
   scene.add(panel(point(low, top_z), y, x, {Material::plaster}));
-
-  PlaceParts parts;
-  parts.surfaces = palette(config.seed, config.light == Light::day);
-  parts.climate = indoor_climate(config.light);
-  scene.build(parts);
-  return parts;
+  return indoors(config, {}, scene);
 }
 
 }  // namespace pllit

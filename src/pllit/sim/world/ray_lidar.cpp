@@ -82,9 +82,9 @@ class Scanner {
         poses_(run.T_W_L, start_, start_ + lidar.pattern.scan_period + lidar.pattern.shot_period),
         order_(by_line(lidar.pattern)) {}
 
-  LineScan scan(Arena& arena) {
-    LineScan result;
-    result.scan.start = start_;
+  LidarScan scan(Arena& arena) {
+    LidarScan result;
+    result.start = start_;
     const BeamPattern& pattern = lidar_.pattern;
     const std::int64_t last = first_shot_of(pattern, index_ + 1), stride = kStep / pattern.shot_period;
     for (std::int64_t first = first_shot_of(pattern, index_); first < last; first += stride)
@@ -101,7 +101,7 @@ class Scanner {
     return order;
   }
 
-  void add_step(std::int64_t first, std::size_t shots, Arena& arena, LineScan& result) {
+  void add_step(std::int64_t first, std::size_t shots, Arena& arena, LidarScan& result) {
     const std::size_t lasers = order_.size();
     const Time middle = run_.start + (first * 2 + static_cast<std::int64_t>(shots)) * lidar_.pattern.shot_period / 2;
     run_.caster.move_to(run_.T_W_L(middle).translation(), to_seconds(middle - run_.start));
@@ -115,10 +115,10 @@ class Scanner {
       for (const std::size_t row : row_of) {
         const std::size_t i = row * shots + shot;
         if (!points_[i]) continue;
-        result.scan.points_L.push_back(points_[i]->p_L);
-        result.scan.offsets.push_back(batch_.beams[i].offset);
-        result.scan.intensity.push_back(points_[i]->intensity);
-        result.line.push_back(batch_.beams[i].line);
+        result.points_L.push_back(points_[i]->p_L);
+        result.offsets.push_back(batch_.beams[i].offset);
+        result.intensity.push_back(points_[i]->intensity);
+        result.rings.push_back(batch_.beams[i].line);
       }
   }
 
@@ -242,7 +242,7 @@ class Scanner {
 
 }  // namespace
 
-LineScan simulate_scan(const RayLidar& lidar, const LidarRun& run, std::int64_t index, Arena& arena) {
+LidarScan simulate_scan(const RayLidar& lidar, const LidarRun& run, std::int64_t index, Arena& arena) {
   return Scanner(lidar, run, index).scan(arena);
 }
 

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <vector>
 
 #include "pllit/base/arena.hpp"
 #include "pllit/sensor/measurements.hpp"
@@ -21,17 +20,11 @@ struct LidarRun {
   std::uint64_t seed = 0;
 };
 
-/// A scan with the line (ring, laser) of every point.
-struct LineScan {
-  LidarScan scan;
-  std::vector<std::uint8_t> line;
-};
-
 /// Scan `index` with every pulse sent from the rig's pose at its own time; actors stand still for 5 ms
 /// at a time. Where the pulses beside it, or above and below it, lie on other surfaces than a pulse does, it is split
 /// into three or five rays inside its divergence, so that edges give mixed points. Intensity is what the sensor would
 /// write: whole counts of reflectivity times cosine of incidence, range compensated. Textures do not vary it. The same
-/// seed gives the same bytes, whatever the number of threads.
-LineScan simulate_scan(const RayLidar& lidar, const LidarRun& run, std::int64_t index, Arena& arena);
+/// seed gives the same bytes, whatever the number of threads. Every point has its ring.
+LidarScan simulate_scan(const RayLidar& lidar, const LidarRun& run, std::int64_t index, Arena& arena);
 
 }  // namespace pllit
