@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace pllit {
 namespace {
 
@@ -106,6 +108,104 @@ TEST(PacketAssembler, AppliesTheLidarDelay) {
   push_imu(assembler, 0ms, 200ms);
   assembler.push(scan_from(0ms));
   EXPECT_EQ(assembler.pop()->end, Time(125ms));
+}
+
+CameraFrame image_at(Duration t) { return {Time(t), cv::Mat(2, 2, CV_8UC1)}; }
+
+/// A scan of a point every 10 ms.
+LidarScan dense_scan_from(Duration start, Duration length = 100ms) {
+  LidarScan scan{.start = Time(start), .points_L = {}, .offsets = {}, .intensity = {}};
+  for (Duration t = 10ms; t <= length; t += 10ms) {
+    scan.points_L.push_back(Vector3f(1.0F, 0.0F, static_cast<float>((start + t).count()) * 1e-9F));
+    scan.offsets.push_back(t);
+    scan.intensity.push_back(1.0F);
+    scan.rings.push_back(static_cast<std::uint16_t>(t / 10ms));
+  }
+  return scan;
+}
+
+constexpr AssemblerConfig with_images{.images = true};
+
+/// Scans back to back from 0 and IMU data until `until`.
+PacketAssembler scanned(Duration until) {
+  PacketAssembler assembler{Rig{}, with_images};
+  push_imu(assembler, 0ms, until);
+  for (Duration t = 0ms; t + 100ms <= until; t += 100ms) assembler.push(dense_scan_from(t));
+  return assembler;
+}
+
+TEST(PacketAssemblerWithImages, CutsScansAtTheImages) {
+  PacketAssembler assembler = scanned(400ms);
+  for (const Duration t : {50ms, 150ms, 250ms}) assembler.push(image_at(t));
+  for (const Duration end : {50ms, 150ms, 250ms}) {
+    const auto packet = assembler.pop();
+    ASSERT_TRUE(packet && packet->scan && packet->image) << end.count();
+    EXPECT_EQ(packet->end, Time(end));
+    EXPECT_EQ(packet->image->time, Time(end));
+    EXPECT_EQ(packet->scan->end(), Time(end));
+    EXPECT_EQ(packet->scan->points_L.size(), end == 50ms ? 5U : 10U);
+    EXPECT_EQ(packet->scan->offsets.front(), Duration{0});
+  }
+}
+
+TEST(PacketAssemblerWithImages, LosesAndDoublesNoPoint) {
+  PacketAssembler assembler = scanned(2s);
+  for (Duration t = 33ms; t < 1900ms; t += 97ms) assembler.push(image_at(t));
+  std::vector<float> times;
+  const auto take = [&](const std::optional<SensorPacket>& packet) {
+    if (!packet) return false;
+    EXPECT_TRUE(packet->scan);
+    for (std::size_t i = 0; i < packet->scan->points_L.size(); ++i) {
+      times.push_back(packet->scan->points_L[i].z());
+      EXPECT_NEAR(times.back(), to_seconds(packet->scan->start + packet->scan->offsets[i]), 1e-6);
+    }
+    EXPECT_EQ(packet->scan->rings.size(), packet->scan->points_L.size());
+    return true;
+  };
+  while (take(assembler.pop())) {
+  }
+  while (take(assembler.flush())) {
+  }
+  EXPECT_EQ(times.size(), 200U);
+  EXPECT_TRUE(std::ranges::is_sorted(times));
+}
+
+TEST(PacketAssemblerWithImages, WaitsForALateImageAHundredAndFiftyMilliseconds) {
+  PacketAssembler assembler = scanned(200ms);
+  EXPECT_FALSE(assembler.pop()) << "an image within the first scan may still come";
+  assembler.push(image_at(60ms));
+  ASSERT_TRUE(assembler.pop());
+  push_imu(assembler, 210ms, 260ms);
+  const auto packet = assembler.pop();
+  ASSERT_TRUE(packet) << "none came for 160 ms after the first scan's end";
+  EXPECT_EQ(packet->end, Time(100ms));
+  EXPECT_FALSE(packet->image);
+  assembler.push(image_at(90ms));
+  EXPECT_EQ(assembler.counts().images_too_late, 1);
+}
+
+TEST(PacketAssemblerWithImages, GoOnWhereTheLidarFallsSilent) {
+  PacketAssembler assembler = scanned(100ms);
+  assembler.push(image_at(100ms));
+  ASSERT_TRUE(assembler.pop());
+  push_imu(assembler, 110ms, 2000ms);
+  for (Duration t = 200ms; t <= 1500ms; t += 100ms) assembler.push(image_at(t));
+  int images = 0;
+  while (const auto packet = assembler.pop()) {
+    EXPECT_FALSE(packet->scan);
+    images += packet->image ? 1 : 0;
+  }
+  EXPECT_EQ(images, 14);
+}
+
+TEST(PacketAssemblerWithImages, LeavesOutImagesThatFollowTooSoonAndAddsTheCamerasDelay) {
+  Rig rig;
+  rig.camera_delay = -10ms;
+  PacketAssembler assembler{rig, with_images};
+  push_imu(assembler, 0ms, 500ms);
+  for (Duration t = 0ms; t < 500ms; t += 100ms) assembler.push(dense_scan_from(t));
+  for (Duration t = 40ms; t < 400ms; t += 40ms) assembler.push(image_at(t));
+  for (const Duration end : {30ms, 110ms, 190ms}) EXPECT_EQ(assembler.pop()->end, Time(end));
 }
 
 TEST(PacketAssembler, KeepsLittleImuDataBeforeTheFirstScan) {

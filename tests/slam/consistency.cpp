@@ -70,7 +70,7 @@ TEST(Consistency, WithAKnownMapTheNeesOfThePoseIsChiSquared) {
             iterated_update(motion.sweep.estimate, [&](const NavState& x) { return residuals(x).sums; }, {});
         ASSERT_GT(update.last.inliers, 100) << update.last.candidates << " of " << cloud.points_I.size() << " at "
                                             << to_seconds(packet->end.time_since_epoch());
-        estimate = at_end(motion.sweep, motion.predicted, update.posterior);
+        estimate = at_end(motion, update).estimate;
       }
     }
     const SE3 truth = simulation->motion().at(estimate->mean.time).T_W_I;

@@ -170,11 +170,46 @@ TEST(Sweep, OfAnInstantLeavesTheUpdateAsItIs) {
   start.covariance = 0.01 * Matrix18::Identity();
   const auto imu = constant_imu({0.3, -0.2, 0.5}, {1.0, 0.5, 9.0}, 100.0, 0.1);
   const Propagation motion = propagate(start, imu, Time(100ms), ImuNoise{});
-  Estimate posterior{.mean = boxplus(motion.predicted.mean, Vector18::Constant(0.01)),
-                     .covariance = 0.5 * motion.predicted.covariance};
-  const Estimate end = at_end(motion.sweep, motion.predicted, posterior);
-  EXPECT_LT(boxminus(end.mean, posterior.mean).norm(), 1e-9);
-  EXPECT_LT((end.covariance - posterior.covariance).norm(), 1e-9);
+  UpdateResult update;
+  update.posterior = {.mean = boxplus(motion.predicted.mean, Vector18::Constant(0.01)),
+                      .covariance = 0.5 * motion.predicted.covariance};
+  update.J_posterior_prior = 0.5 * Matrix18::Identity();
+  const SmoothedEnd end = at_end(motion, update);
+  EXPECT_LT(boxminus(end.estimate.mean, update.posterior.mean).norm(), 1e-9);
+  EXPECT_LT((end.estimate.covariance - update.posterior.covariance).norm(), 1e-9);
+  EXPECT_LT((end.J_end_begin - 0.5 * motion.J_end_begin).norm(), 1e-9);
+}
+
+TEST(Sweep, JacobiansToTheBeginningEqualCentralDifferences) {
+  Random random(9);
+  Estimate start = known_start(random);
+  const Vector3d gyro(0.3, -0.2, 0.5), accel(1.0, 0.5, 9.0);
+  const auto imu = constant_imu(gyro, accel, 100.0, 0.3);
+  const Propagation motion = propagate(start, imu, Time(300ms), ImuNoise{}, {}, Time(100ms));
+  const NavState& end = motion.predicted.mean;
+  // Errors of the sweep's mean pose, and at the end, of a truth that began `error` away.
+  const auto errors = [&](const Vector18& error) {
+    Estimate truth{.mean = boxplus(start.mean, error)};
+    Eigen::Matrix<double, 36, 1> both = Eigen::Matrix<double, 36, 1>::Zero();
+    for (std::size_t i = 0; i + 1 <= imu.size(); ++i) {
+      if (i >= 10) {
+        const double share = (i == 10 || i + 1 == imu.size() ? 0.5 : 1.0) / static_cast<double>(imu.size() - 11);
+        const SE3 there = truth.mean.T_W_I() * motion.path.pose_at(truth.mean.time).inverse() * end.T_W_I();
+        both.segment<3>(0) += share * log_so3(end.R_W_I.inverse() * there.asSO3());
+        both.segment<3>(3) += share * (there.translation() - end.p_W);
+      }
+      if (i + 1 < imu.size()) truth.mean = imu_step(truth.mean, gyro, accel, 10ms).state;
+    }
+    both.tail<18>() = boxminus(truth.mean, end);
+    both.segment<12>(6) = both.tail<12>();
+    return both;
+  };
+  constexpr double step = 1e-5;
+  for (int i = 0; i < ix::size; ++i) {
+    const Eigen::Matrix<double, 36, 1> slope = (errors(step * Vector18::Unit(i)) - errors(-step * Vector18::Unit(i))) / (2.0 * step);
+    EXPECT_LT((slope.head<18>() - motion.sweep.J_estimate_begin.col(i)).norm(), 2e-4) << i;
+    EXPECT_LT((slope.tail<18>() - motion.J_end_begin.col(i)).norm(), 1e-6) << i;
+  }
 }
 
 TEST(Propagate, GoesStraightOnThroughAGapAndDoubtsIt) {

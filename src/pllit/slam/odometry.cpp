@@ -45,7 +45,7 @@ FrameEstimate Odometry::step(const SensorPacket& packet) {
     clock.charge(Stage::deskew);
 
     const UpdateResult lidar = match(motion.sweep.estimate, sparse, facts);
-    estimate_ = at_end(motion.sweep, motion.predicted, lidar.posterior);
+    estimate_ = at_end(motion, lidar).estimate;
     clock.charge(Stage::lidar);
 
     extend_map(dense, lidar.posterior.mean.T_W_I(), facts);  // once, where the whole scan lies best
@@ -65,7 +65,7 @@ FrameEstimate Odometry::step(const SensorPacket& packet) {
 UpdateResult Odometry::match(const Estimate& predicted, const PointCloud& points, FrameFacts& facts) {
   facts.points = static_cast<int>(points.points_I.size());
   facts.map_empty = map_.voxels() == 0;
-  UpdateResult result{.posterior = predicted, .last = {}, .iterations = 0, .converged = false};
+  UpdateResult result{.posterior = predicted, .last = {}};
   if (facts.map_empty) return result;
 
   PlaneResiduals residuals(points, map_, rig_, predicted.covariance.topLeftCorner<6, 6>(), config_.planes, arena_);
@@ -83,7 +83,7 @@ UpdateResult Odometry::match(const Estimate& predicted, const PointCloud& points
   facts.iterations = result.iterations;
   facts.residual_rms_m = facts.inliers > 0 ? std::sqrt(result.last.squared_m2 / facts.inliers) : 0.0;
   facts.matched = match_accepted(result.last, config_.health);
-  if (!facts.matched) result.posterior = predicted;
+  if (!facts.matched) return {.posterior = predicted, .last = result.last};
   return result;
 }
 

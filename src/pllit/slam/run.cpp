@@ -22,6 +22,7 @@ class Run {
       if (!*event) return drain(true);
       if (auto* imu = std::get_if<ImuSample>(&(*event)->data)) assembler_.push(*imu);
       if (auto* scan = std::get_if<LidarScan>(&(*event)->data)) assembler_.push(std::move(*scan));
+      if (auto* image = std::get_if<CameraFrame>(&(*event)->data)) assembler_.push(std::move(*image));
       clock.charge(Stage::read);
       read_ms_ += clock.times_ms()[static_cast<std::size_t>(Stage::read)];
       if (const auto done = drain(false); !done) return done;
@@ -95,6 +96,7 @@ class Run {
     tell(counts.imu_not_ascending, "IMU samples were duplicates or stepped back in time and were dropped");
     tell(counts.scans_too_late, "scans were duplicates, late or stepped back in time and were dropped");
     tell(counts.scans_empty, "scans held no points");
+    tell(counts.images_too_late, "images were duplicates, late or stepped back in time and were dropped");
   }
 
   EventSource& source_;

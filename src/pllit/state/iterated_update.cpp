@@ -15,24 +15,26 @@ Matrix18 on_rotation(const Matrix3d& block) {
   return m;
 }
 
-/// Covariance after a gain that leaves the unobserved directions alone (Schmidt 1966; Joseph's form, valid for any
-/// gain). `optimal`: covariance after the full gain K = optimal H' R^-1, so that K R K' = optimal (H'R^-1 H) optimal.
-Matrix18 after_partial_gain(const Matrix18& prior, const Matrix18& optimal, const NormalEquations& sums) {
-  const Matrix18 observed = Matrix18::Identity() - sums.unobserved * sums.unobserved.transpose();
-  const Matrix18 kept = Matrix18::Identity() - observed * optimal * sums.H;
-  return kept * prior * kept.transpose() + observed * optimal * sums.H * optimal * observed;
+/// Covariance after any gain (Joseph's form). `kept` = I - K H; `gain`: the covariance G with K = G H' R^-1, so that
+/// K R K' = G (H'R^-1 H) G'.
+Matrix18 after_gain(const Matrix18& prior, const Matrix18& kept, const Matrix18& gain, const Matrix18& H) {
+  return kept * prior * kept.transpose() + gain * H * gain.transpose();
 }
 
 }  // namespace
 
 UpdateResult iterated_update(const Estimate& prior, const Linearize& linearize, const FilterConfig& config) {
-  UpdateResult result{.posterior = prior, .last = {}, .iterations = 0, .converged = false};
+  UpdateResult result{.posterior = prior, .last = {}};
   NavState x = prior.mean;
   Matrix18 covariance = prior.covariance;
   while (result.iterations < config.max_iterations && !result.converged) {
     ++result.iterations;
     result.last = linearize(x);
-    if (result.last.inliers == 0) return {.posterior = prior, .last = result.last, .iterations = result.iterations};
+    if (result.last.inliers == 0) {
+      UpdateResult none{.posterior = prior, .last = result.last};
+      none.iterations = result.iterations;
+      return none;
+    }
 
     const Vector18 d = boxminus(x, prior.mean);
     const Matrix18 J = on_rotation(right_jacobian(d.segment<3>(ix::theta)));
@@ -40,15 +42,19 @@ UpdateResult iterated_update(const Estimate& prior, const Linearize& linearize, 
     // (P^-1 + H) dx = b - P^-1 J d, multiplied by P from the left so that P need not be inverted.
     const Eigen::PartialPivLU<Matrix18> system(Matrix18::Identity() + P * result.last.H);
     Vector18 step = system.solve(P * result.last.b - J * d);
-    Matrix18 posterior = system.solve(P);
-    if (const auto& unobserved = result.last.unobserved; unobserved.cols() > 0) {
+    Matrix18 posterior = system.solve(P), gain = posterior;
+    const auto& unobserved = result.last.unobserved;
+    if (unobserved.cols() > 0) {  // directions that get no gain (Schmidt 1966)
       step -= unobserved * (unobserved.transpose() * (step + d));
-      posterior = after_partial_gain(P, posterior, result.last);
+      gain -= unobserved * (unobserved.transpose() * gain).eval();
     }
+    const Matrix18 kept = Matrix18::Identity() - gain * result.last.H;
+    if (unobserved.cols() > 0) posterior = after_gain(P, kept, gain, result.last.H);
     x = boxplus(x, step);
 
     const Matrix18 L = on_rotation(right_jacobian(step.segment<3>(ix::theta)));
     covariance = L * posterior * L.transpose();
+    result.J_posterior_prior = L * kept * J;
     result.converged = step.segment<3>(ix::theta).norm() < config.rotation_tolerance_rad &&
                        step.segment<3>(ix::p).norm() < config.position_tolerance_m;
   }

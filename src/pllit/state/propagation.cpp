@@ -107,11 +107,17 @@ class SweepSum {
     J_twist_error.block<3, 3>(3, ix::theta) = skew(now.mean.p_W - about_W_) * R;
     J_twist_error.block<3, 3>(3, ix::p).setIdentity();
     const Matrix18x6 with_twist = now.covariance * J_twist_error.transpose();
+    J_twist_begin_ += weight * J_twist_error * J_error_begin_;
     const Matrix6 cross = J_twist_error * with_error_;
     covariance_ += weight * (cross + cross.transpose()) + weight * weight * J_twist_error * with_twist;
     with_error_ += weight * with_twist;
   }
-  void step(const Matrix18& J_next_error) { with_error_ = (J_next_error * with_error_).eval(); }
+  void step(const Matrix18& J_next_error) {
+    with_error_ = (J_next_error * with_error_).eval();
+    J_error_begin_ = (J_next_error * J_error_begin_).eval();
+  }
+  /// Of the latest error to the one at the beginning.
+  const Matrix18& J_error_begin() const { return J_error_begin_; }
 
   /// As a pose error at the end, jointly with the other states there.
   SweepPrediction seen_from(const Estimate& end) const {
@@ -119,7 +125,8 @@ class SweepSum {
     J_pose_twist.topLeftCorner<3, 3>() = end.mean.R_W_I.rotation().transpose();
     J_pose_twist.bottomLeftCorner<3, 3>() = -skew(end.mean.p_W - about_W_);
     J_pose_twist.bottomRightCorner<3, 3>().setIdentity();
-    SweepPrediction sweep{.estimate = end, .with_end = end.covariance};
+    SweepPrediction sweep{.estimate = end, .with_end = end.covariance, .J_estimate_begin = J_error_begin_};
+    sweep.J_estimate_begin.topRows<ix::pose_size>() = J_pose_twist * J_twist_begin_;
     sweep.with_end.leftCols<ix::pose_size>() = with_error_ * J_pose_twist.transpose();
     Matrix18& P = sweep.estimate.covariance;
     P.topLeftCorner<6, 6>() = J_pose_twist * covariance_ * J_pose_twist.transpose();
@@ -136,6 +143,8 @@ class SweepSum {
   Vector3d about_W_;
   Matrix18x6 with_error_ = Matrix18x6::Zero();  // covariance of the latest error with s
   Matrix6 covariance_ = Matrix6::Zero();        // of s
+  Matrix18 J_error_begin_ = Matrix18::Identity();
+  Eigen::Matrix<double, 6, ix::size> J_twist_begin_ = Eigen::Matrix<double, 6, ix::size>::Zero();
 };
 
 }  // namespace
@@ -189,7 +198,7 @@ SE3 MotionPath::pose_at(Time time) const {
 
 Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time until, const ImuNoise& noise,
                       const GapModel& gaps, std::optional<Time> sweep_begin) {
-  Propagation result{.path = {}, .predicted = from, .sweep = {}, .longest_gap = Duration{0}};
+  Propagation result{.path = {}, .predicted = from, .J_end_begin = {}, .sweep = {}, .longest_gap = Duration{0}};
   Estimate& now = result.predicted;
   const Time begin = std::clamp(sweep_begin.value_or(until), from.mean.time, std::max(until, from.mean.time));
   SweepSum sweep(begin, until, from.mean.p_W);
@@ -213,7 +222,9 @@ Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time
     sweep.add(now, time, dt);
   }
   symmetrise(now.covariance);
-  result.sweep = begin < until ? sweep.seen_from(now) : SweepPrediction{.estimate = now, .with_end = now.covariance};
+  result.J_end_begin = sweep.J_error_begin();
+  result.sweep = begin < until ? sweep.seen_from(now)
+                               : SweepPrediction{now, now.covariance, sweep.J_error_begin()};
   // A last node at the end, so that the path reaches it; it goes on as the one before.
   PathNode last = node_of(now.mean, Vector3d::Zero(), Vector3d::Zero());
   if (!result.path.nodes.empty()) {
@@ -224,7 +235,9 @@ Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time
   return result;
 }
 
-Estimate at_end(const SweepPrediction& sweep, const Estimate& end, const Estimate& posterior) {
+SmoothedEnd at_end(const Propagation& motion, const UpdateResult& sweep_update) {
+  const SweepPrediction& sweep = motion.sweep;
+  const Estimate &end = motion.predicted, &posterior = sweep_update.posterior;
   // Scaled to a unit diagonal, so that one threshold tells what is known exactly in every unit.
   const Matrix18& P = sweep.estimate.covariance;
   const Vector18 scale = P.diagonal().unaryExpr([](double v) { return v > 0.0 ? 1.0 / std::sqrt(v) : 0.0; });
@@ -235,7 +248,8 @@ Estimate at_end(const SweepPrediction& sweep, const Estimate& end, const Estimat
   Estimate updated{.mean = boxplus(end.mean, gain * boxminus(posterior.mean, sweep.estimate.mean)),
                    .covariance = end.covariance + gain * (posterior.covariance - P) * gain.transpose()};
   symmetrise(updated.covariance);
-  return updated;
+  const Matrix18 news = sweep_update.J_posterior_prior - Matrix18::Identity();
+  return {updated, motion.J_end_begin + gain * news * sweep.J_estimate_begin};
 }
 
 }  // namespace pllit

@@ -7,7 +7,7 @@
 
 #include "pllit/sensor/measurements.hpp"
 #include "pllit/sensor/rig.hpp"
-#include "pllit/state/nav_state.hpp"
+#include "pllit/state/iterated_update.hpp"
 
 namespace pllit {
 
@@ -48,11 +48,13 @@ SE3 extrapolate(const PathNode& node, double dt_s);
 struct SweepPrediction {
   Estimate estimate;                     ///< the predicted end, its pose error replaced by the mean over the sweep
   Matrix18 with_end = Matrix18::Zero();  ///< covariance of the error at the end (rows) with the estimate's (columns)
+  Matrix18 J_estimate_begin = Matrix18::Identity();  ///< of the estimate's error to the one that the packet began with
 };
 
 struct Propagation {
   MotionPath path;
   Estimate predicted;     ///< at `until`
+  Matrix18 J_end_begin;   ///< of the error there to the one at the beginning
   SweepPrediction sweep;  ///< of the sweep that ends there
   Duration longest_gap;   ///< longest stretch without an IMU sample
 };
@@ -75,6 +77,10 @@ Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time
 
 /// The estimate at the end of a sweep, given what has been learnt of the sweep: as a smoother carries news from one
 /// state to another that is correlated with it (Rauch, Tung and Striebel 1965).
-Estimate at_end(const SweepPrediction& sweep, const Estimate& end, const Estimate& posterior);
+struct SmoothedEnd {
+  Estimate estimate;
+  Matrix18 J_end_begin;  ///< of its error to the one that the packet began with
+};
+SmoothedEnd at_end(const Propagation& motion, const UpdateResult& sweep_update);
 
 }  // namespace pllit
