@@ -55,6 +55,26 @@ TEST(Camera, ProjectsAWorkedExample) {
   EXPECT_LT((*wide.project({2.0, 0.0, 2.0}) - Vector2d(50.0 + 100.0 * M_PI / 4.0, 60.0)).norm(), 1e-9);
 }
 
+TEST(Camera, SlopeOfTheProjectionMatchesCentralDifferences) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> share(0.0, 1.0), range(0.3, 20.0);
+  for (const Camera& camera : {fisheye(), pinhole()}) {
+    std::vector<Vector3d> points{{0.0, 0.0, 2.0}};
+    for (int i = 0; i < 50; ++i)
+      points.push_back(range(engine) * camera.ray({share(engine) * camera.width, share(engine) * camera.height}));
+    for (const Vector3d& p : points) {
+      const auto projection = camera.project_with_slope(p);
+      ASSERT_TRUE(projection);
+      EXPECT_EQ(projection->pixel_px, *camera.project(p));
+      for (int i = 0; i < 3; ++i) {
+        const Vector3d d = 1e-6 * p.norm() * Vector3d::Unit(i);
+        const Vector2d slope = (*camera.project(p + d) - *camera.project(p - d)) / (2.0 * d.norm());
+        EXPECT_LT((projection->J_pixel_point.col(i) - slope).norm(), 1e-6 * projection->J_pixel_point.norm());
+      }
+    }
+  }
+}
+
 TEST(Camera, ProjectsNothingFromBehind) {
   EXPECT_FALSE(pinhole().project({0.1, 0.1, -1.0}));
   EXPECT_FALSE(pinhole().project({0.1, 0.1, 0.0}));

@@ -30,15 +30,15 @@ Vector2d radtan(const std::array<double, 5>& k, const Vector2d& m) {
                                k[2] * (r2 + 2.0 * m.y() * m.y()) + 2.0 * k[3] * xy);
 }
 
-/// d(radtan)/dm by central differences: six evaluations, exact enough for Newton.
+/// d(radtan)/dm.
 Eigen::Matrix2d radtan_slope(const std::array<double, 5>& k, const Vector2d& m) {
-  constexpr double step = 1e-6;
+  const double x = m.x(), y = m.y(), r2 = m.squaredNorm();
+  const double radial = 1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  const double radial_slope = k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[4]);  // to r2
+  const double mixed = 2.0 * k[2] * x + 2.0 * k[3] * y;
   Eigen::Matrix2d slope;
-  for (int i = 0; i < 2; ++i) {
-    const Vector2d d = step * Vector2d::Unit(i);
-    slope.col(i) = (radtan(k, m + d) - radtan(k, m - d)) / (2.0 * step);
-  }
-  return slope;
+  slope << 2.0 * k[2] * y + 6.0 * k[3] * x, mixed, mixed, 6.0 * k[2] * y + 2.0 * k[3] * x;
+  return slope + radial * Eigen::Matrix2d::Identity() + 2.0 * radial_slope * m * m.transpose();
 }
 
 }  // namespace
@@ -59,6 +59,28 @@ std::optional<Vector2d> Camera::project(const Vector3d& p_C) const {
     if (radtan_slope(k, undistorted).determinant() <= 0.0 || m.dot(undistorted) < 0.0) return std::nullopt;
   }
   return Vector2d(fx * m.x() + cx, fy * m.y() + cy);
+}
+
+std::optional<Camera::Projection> Camera::project_with_slope(const Vector3d& p_C) const {
+  const auto pixel = project(p_C);
+  if (!pixel) return std::nullopt;
+  Eigen::Matrix<double, 2, 3> J;  // of the distorted, normalised coordinates
+  if (distortion == Distortion::equidistant) {
+    const double r = p_C.head<2>().norm(), range2 = p_C.squaredNorm();
+    const Radial radial = equidistant(k, std::atan2(r, p_C.z()));
+    const bool on_axis = r < 1e-9 * p_C.z();
+    const Vector2d out = on_axis ? Vector2d(Vector2d::Zero()) : Vector2d(p_C.head<2>() / r);
+    const double across = on_axis ? 1.0 / p_C.z() : radial.value / r, along = radial.slope * p_C.z() / range2;
+    J << across * Eigen::Matrix2d::Identity() + (along - across) * out * out.transpose(),
+        -radial.slope * r / range2 * out;
+  } else {
+    const Vector2d m = p_C.head<2>() / p_C.z();
+    const Eigen::Matrix2d slope = radtan_slope(k, m) / p_C.z();
+    J << slope, -slope * m;
+  }
+  J.row(0) *= fx;
+  J.row(1) *= fy;
+  return Projection{*pixel, J};
 }
 
 Vector3d Camera::ray(const Vector2d& pixel_px) const {

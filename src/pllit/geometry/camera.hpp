@@ -18,6 +18,12 @@ struct Camera {
   /// Pixel of a point in the camera frame (z forward), or nothing where the model has none: behind the camera, or
   /// beyond the angle at which the distortion stops growing.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_C) const;
+  struct Projection {
+    Eigen::Vector2d pixel_px;
+    Eigen::Matrix<double, 2, 3> J_pixel_point;  ///< px/m
+  };
+  /// Likewise, with the derivative.
+  std::optional<Projection> project_with_slope(const Eigen::Vector3d& p_C) const;
   /// Unit ray in the camera frame through a pixel; the inverse of project, by Newton iteration.
   Eigen::Vector3d ray(const Eigen::Vector2d& pixel_px) const;
 };

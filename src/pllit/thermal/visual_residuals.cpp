@@ -1,0 +1,197 @@
+#include "pllit/thermal/visual_residuals.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "pllit/thermal/reprojection.hpp"
+
+namespace pllit {
+
+namespace ix = error_index;
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix2d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+using Matrix2x12 = Eigen::Matrix<double, 2, 12>;
+
+constexpr Index kPose = ix::pose_size;
+
+/// Cauchy's loss of a residual of squared Mahalanobis length `squared`.
+struct Loss {
+  double weight, cost;
+};
+Loss cauchy(double squared, double k) {
+  const double k2 = k * k;
+  return {k2 / (k2 + squared), k2 * std::log1p(squared / k2)};
+}
+
+/// Mean of weight x squared for a residual of two normal numbers: squared / 2 is exponentially distributed.
+double mean_weighted_square(double k) {
+  const double a = 0.5 * k * k;
+  const double mean_weight = -a * std::exp(a) * std::expint(-a);
+  return 2.0 * a * (1.0 - mean_weight);
+}
+
+/// Adds residuals to the joint equations.
+class Sums {
+ public:
+  Sums(std::size_t keyframes, const VisualConfig& config, const MatrixXd& search_covariance)
+      : equations_(keyframes), config_(config), search_(search_covariance) {
+    assert(search_.size() == 0 || search_.rows() == equations_.b.size());
+  }
+
+  /// `keyframe`: its index, or nothing for residuals of the pose now alone.
+  void add(const ImageResidual& residual, double sigma_px, std::optional<std::size_t> keyframe) {
+    ++equations_.candidates;
+    const Index at = keyframe ? ix::size + kPose * static_cast<Index>(*keyframe) : 0;
+    const Matrix2d noise = sigma_px * sigma_px * Matrix2d::Identity() + residual.model_px2;
+    const Matrix2d information = noise.inverse();
+    const double squared = residual.r_px.dot(information * residual.r_px);
+    Matrix2x12 J;
+    J << residual.J_now, residual.J_keyframe;
+    const double beyond = search_.size() == 0
+                              ? squared
+                              : residual.r_px.dot((noise + searched(J, at)).inverse() * residual.r_px);
+    if (const double gate2 = config_.gate * config_.gate; beyond > gate2) {
+      equations_.cost += cauchy(squared * gate2 / beyond, config_.loss).cost;
+      return;
+    }
+    ++equations_.inliers;
+    const Loss loss = cauchy(squared, config_.loss);
+    equations_.cost += loss.cost;
+    equations_.squared += loss.weight * squared;
+    add_blocks(J, loss.weight * information, residual.r_px, at);
+  }
+
+  /// A match that cannot be right: as if beyond the gate.
+  void reject() {
+    ++equations_.candidates;
+    equations_.cost += cauchy(config_.gate * config_.gate, config_.loss).cost;
+  }
+
+  JointEquations capped() && {
+    JointEquations& sums = equations_;
+    sums.expected = sums.inliers * mean_weighted_square(config_.loss);
+    // Errors of calibration and timing are common to all of an image: together its points may claim only so much.
+    if (config_.max_information > 0.0 && sums.inliers > config_.max_information) {
+      const double share = config_.max_information / sums.inliers;
+      sums.H *= share;
+      sums.b *= share;
+      sums.cost *= share;
+      sums.squared *= share;
+      sums.expected *= share;
+    }
+    return std::move(sums);
+  }
+
+ private:
+  /// Covariance in the image of what the prediction leaves open.
+  Matrix2d searched(const Matrix2x12& J, Index at) const {
+    const auto now = J.leftCols<kPose>(), keyframe = J.rightCols<kPose>();
+    const Matrix2d mixed = now * search_.block<kPose, kPose>(0, at) * keyframe.transpose();
+    return now * search_.topLeftCorner<kPose, kPose>() * now.transpose() + mixed + mixed.transpose() +
+           keyframe * search_.block<kPose, kPose>(at, at) * keyframe.transpose();
+  }
+
+  void add_blocks(const Matrix2x12& J, const Matrix2d& W, const Vector2d& r_px, Index at) {
+    const Matrix2x12 WJ = W * J;
+    equations_.H.topLeftCorner<kPose, kPose>().noalias() += J.leftCols<kPose>().transpose() * WJ.leftCols<kPose>();
+    equations_.b.head<kPose>().noalias() -= WJ.leftCols<kPose>().transpose() * r_px;
+    if (at == 0) return;
+    const Matrix6 mixed = J.leftCols<kPose>().transpose() * WJ.rightCols<kPose>();
+    equations_.H.block<kPose, kPose>(0, at) += mixed;
+    equations_.H.block<kPose, kPose>(at, 0) += mixed.transpose();
+    equations_.H.block<kPose, kPose>(at, at).noalias() += J.rightCols<kPose>().transpose() * WJ.rightCols<kPose>();
+    equations_.b.segment<kPose>(at).noalias() -= WJ.rightCols<kPose>().transpose() * r_px;
+  }
+
+  JointEquations equations_;
+  const VisualConfig& config_;
+  const MatrixXd& search_;
+};
+
+/// Whether the point lies beside the segment, within the distance.
+bool beside(const Vector2d& point_px, const LineObservation& line, double distance_px) {
+  const Vector2d along = line.end_px - line.start_px, from_start = point_px - line.start_px;
+  const double length_px = std::max(along.norm(), 1e-9);
+  const double foot_px = from_start.dot(along) / length_px;
+  const double across_px = (from_start.x() * along.y() - from_start.y() * along.x()) / length_px;
+  return std::abs(across_px) <= distance_px && foot_px >= -distance_px && foot_px <= length_px + distance_px;
+}
+
+}  // namespace
+
+std::vector<double> adaptive_weights(std::span<const PointObservation> points, const VisualConfig& config) {
+  std::vector<double> weights(points.size(), 1.0);
+  if (!config.weights || points.empty()) return weights;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance = points[i].line_px / config.weight_sigma_px;
+    if (points[i].line_px >= 0.0) weights[i] = config.weight_gain * (1.0 + std::exp(-distance * distance));
+    squares += weights[i] * weights[i];
+  }
+  const double scale = std::sqrt(static_cast<double>(points.size()) / squares);
+  for (double& weight : weights) weight *= scale;
+  return weights;
+}
+
+std::vector<PointObservation> off_lines(std::span<const PointObservation> points,
+                                        std::span<const LineObservation> lines, double distance_px) {
+  std::vector<PointObservation> kept;
+  std::ranges::copy_if(points, std::back_inserter(kept), [&](const PointObservation& point) {
+    return point.line_px < 0.0 || std::ranges::none_of(lines, [&](const LineObservation& line) {
+             return beside(point.observed_px, line, distance_px);
+           });
+  });
+  return kept;
+}
+
+JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I_keyframes,
+                               const ImageObservations& observations, const Rig& rig, const VisualConfig& config,
+                               const MatrixXd& search_covariance) {
+  const SE3 T_W_I = state.T_W_I();
+  Sums sums(T_W_I_keyframes.size(), config, search_covariance);
+  const std::vector<double> weights = adaptive_weights(observations.points, config);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const PointObservation& point = observations.points[i];
+    assert(point.keyframe < T_W_I_keyframes.size());
+    if (const auto residual = point_residual(T_W_I, T_W_I_keyframes[point.keyframe], point, rig))
+      sums.add(*residual, config.point_sigma_px / weights[i], point.keyframe);
+    else
+      sums.reject();
+  }
+  if (!config.lines) return std::move(sums).capped();
+  const double most_turn = std::sin(config.line_turn_deg * M_PI / 180.0);
+  for (const LineObservation& line : observations.lines) {
+    const auto seen = line_residual(T_W_I, line, rig);
+    if (seen && seen->sin_plane > config.line_plane && seen->sin_turn < most_turn)
+      sums.add(seen->residual, config.line_sigma_px, std::nullopt);
+    else
+      sums.reject();
+  }
+  return std::move(sums).capped();
+}
+
+Matrix6 keyframe_noise(std::span<const Vector3d> points_K, const Rig& rig, double sigma_px) {
+  // What few points or a poor spread of them leave open stays within a pose that nobody would take for a keyframe's.
+  constexpr double most_turn_rad = 0.01, most_shift_m = 0.1;
+  Vector6 least;
+  least << Vector3d::Constant(1.0 / (most_turn_rad * most_turn_rad)),
+      Vector3d::Constant(1.0 / (most_shift_m * most_shift_m));
+  Matrix6 information = least.asDiagonal();
+  for (const Vector3d& p_K : points_K) {
+    const PointObservation itself{.p_K_m = p_K, .observed_px = Vector2d::Zero()};
+    if (const auto residual = point_residual(SE3::Identity(), SE3::Identity(), itself, rig))
+      information.noalias() += residual->J_keyframe.transpose() * residual->J_keyframe / (sigma_px * sigma_px);
+  }
+  return information.ldlt().solve(Matrix6::Identity());
+}
+
+}  // namespace pllit

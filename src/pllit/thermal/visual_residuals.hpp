@@ -1,0 +1,49 @@
+// What an image says about the pose: the paper's reprojection residuals of points and of explicit lines ("Thermal-Visual
+// Refinement") as normal equations.
+#pragma once
+
+#include <span>
+
+#include "pllit/sensor/rig.hpp"
+#include "pllit/state/joint_equations.hpp"
+#include "pllit/thermal/observations.hpp"
+
+namespace pllit {
+
+struct VisualConfig {
+  double point_sigma_px = 1.0;    ///< of a matched point: errors of both detections (the paper's R_0)
+  double line_sigma_px = 1.0;     ///< of a line's end point across it (the paper's R_E)
+  double loss = 2.5;              ///< residual, in standard deviations, at which a match has half its say
+  double gate = 3.5;              ///< residuals beyond this many standard deviations, prior included, do not count
+  double max_information = 60.0;  ///< independent points that an image may count for at most; 0: every one counts
+  bool weights = true;            ///< more weight for points on lines
+  double weight_gain = 1.5;       ///< the paper's eta
+  double weight_sigma_px = 1.5;   ///< the paper's sigma: distance from the line at which the extra weight fades
+  bool lines = true;              ///< explicit lines
+  double line_turn_deg = 7.0;     ///< most that an observed line may be turned against the map's
+  double line_plane = 0.05;       ///< sine of the least angle between the plane through camera and line, and the image
+};
+
+/// The paper's adaptive weights w of points, scaled so that the mean of w^2, which is what the information grows with,
+/// is 1: they share out what an image may say and add nothing to it. All 1 where config.weights is off.
+std::vector<double> adaptive_weights(std::span<const PointObservation> points, const VisualConfig& config);
+
+/// Without the points that lie on an observed line of the map, which speaks for them: their matched line passes within
+/// `distance_px` of them, between its end points.
+std::vector<PointObservation> off_lines(std::span<const PointObservation> points,
+                                        std::span<const LineObservation> lines, double distance_px = 3.0);
+
+/// Normal equations over the errors of `state` and of the keyframes' poses. Each residual's noise holds the detector's,
+/// by weight, and that of its depth or line; a redescending loss (Cauchy's) bounds what false matches say. Matches
+/// beyond the gate count with their cost at the gate, so that costs of two states can be compared. The rig must have a
+/// camera. `search_covariance`: (18 + 6n) square, of the prediction, for the gate; empty: no doubt.
+JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I_keyframes,
+                               const ImageObservations& observations, const Rig& rig, const VisualConfig& config,
+                               const Eigen::MatrixXd& search_covariance = {});
+
+/// Covariance of a keyframe's pose (theta, p; right perturbation) as its own points show it, from the detector's noise
+/// alone. All later matches share it, so it belongs to the clone of the pose, once, when that is made: then a rig at
+/// rest cannot learn the same thing from every image. `points_K`: its points in its camera frame, with depth.
+Matrix6 keyframe_noise(std::span<const Vector3d> points_K, const Rig& rig, double sigma_px);
+
+}  // namespace pllit
