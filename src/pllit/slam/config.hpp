@@ -12,6 +12,7 @@
 #include "pllit/sensor/rig.hpp"
 #include "pllit/slam/drift.hpp"
 #include "pllit/slam/health.hpp"
+#include "pllit/slam/vision_config.hpp"
 #include "pllit/state/iterated_update.hpp"
 #include "pllit/state/propagation.hpp"
 #include "pllit/state/start_up.hpp"
@@ -75,6 +76,7 @@ struct Config {
   GapModel gaps;
   DriftConfig drift;
   HealthConfig health;
+  VisionConfig vision;
 };
 
 /// Equal in every key.

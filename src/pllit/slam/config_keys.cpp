@@ -186,6 +186,7 @@ KeyList keys_of(Config& config) {
   list(map, config.map);
   map.add("file_voxel_m", config.map_file_voxel_m, "The written map holds one point in each voxel of this size.", "m",
           {0.001, 10.0});
+  list_thermal(root.section("thermal", "What images do, thermal or visible."), config.vision);
   root.add(PLLIT_KEY(threads), "Threads for the heavy loops; 0: one for every core. Results do not depend on it.", "",
            {0.0, 256.0});
   Section advanced = root.section("advanced", "For experts: the defaults serve nearly everyone.");
@@ -198,6 +199,7 @@ KeyList keys_of(Config& config) {
   list(advanced.section("filter", "The iterated update."), config.filter);
   list(advanced.section("gaps", "What to assume where IMU samples are missing."), config.gaps);
   list(advanced.section("drift", "How the doubt about the map grows."), config.drift);
+  list_vision(advanced.section("vision", "How images are matched and believed."), config.vision);
   list(advanced.section("health", "When a frame is called degraded or lost."), config.health);
   return keys;
 }

@@ -53,4 +53,7 @@ class Section {
   std::string prefix_;
 };
 
+void list_thermal(Section section, VisionConfig& config);
+void list_vision(Section section, VisionConfig& config);
+
 }  // namespace pllit

@@ -17,8 +17,21 @@ std::string joined(const std::vector<std::string>& reasons) {
 std::vector<std::string> health_columns() {
   return {"time_s",     "state",     "reasons",       "points",     "candidates",    "inliers",       "residual_m",
           "iterations", "speed_mps", "sigma_x_m",     "sigma_y_m",  "sigma_z_m",     "sigma_yaw_deg", "share_x",
-          "share_y",    "share_z",   "weakest_share", "degenerate", "since_match_s", "imu_gap_s",     "frame_ms"};
+          "share_y",    "share_z",   "weakest_share", "degenerate", "since_match_s", "imu_gap_s",     "image",
+          "features",   "matches",   "anchored",      "image_inliers", "innovation",  "grey_gain",     "grey_bias",
+          "frame_ms"};
 }
+
+namespace {
+
+/// What became of the frame's image, in a word or with the reason.
+std::string image_word(const ImageFacts& image) {
+  if (!image.seen) return "none";
+  if (!image.refused.empty()) return image.refused;
+  return image.used ? "used" : "too few matches";
+}
+
+}  // namespace
 
 std::vector<FrameCell> health_row(const FrameEstimate& frame) {
   const FrameFacts& facts = frame.facts;
@@ -45,6 +58,14 @@ std::vector<FrameCell> health_row(const FrameEstimate& frame) {
           count(facts.localizability.degenerate),
           facts.since_match_s,
           facts.longest_imu_gap_s,
+          image_word(facts.image),
+          count(facts.image.points),
+          count(facts.image.matches),
+          count(facts.image.anchored),
+          count(facts.image.inliers),
+          facts.image.innovation,
+          facts.image.gain,
+          facts.image.bias_grey,
           std::accumulate(frame.stage_ms.begin(), frame.stage_ms.end(), 0.0)};
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pllit/lidar/degeneracy.hpp"
+#include "pllit/slam/image_facts.hpp"
 
 namespace pllit {
 
@@ -36,6 +37,7 @@ struct FrameFacts {
   double longest_imu_gap_s = 0.0;
   double allowed_imu_gap_s = 0.25;
   Localizability localizability;
+  ImageFacts image;
 };
 
 struct Health {

@@ -9,8 +9,13 @@ namespace pllit {
 
 namespace ix = error_index;
 
-Odometry::Odometry(const Rig& rig, const Config& config)
-    : rig_(rig), config_(config), arena_(config.threads), map_(config.map), drift_(config.drift) {}
+Odometry::Odometry(const Rig& rig, const Config& config, std::unique_ptr<Vision> vision)
+    : rig_(rig),
+      config_(config),
+      arena_(config.threads),
+      map_(config.map),
+      drift_(config.drift),
+      vision_(std::move(vision)) {}
 
 Expected<std::vector<FrameEstimate>> Odometry::process(SensorPacket packet) {
   waiting_.push_back(std::move(packet));
@@ -21,34 +26,54 @@ Expected<std::vector<FrameEstimate>> Odometry::process(SensorPacket packet) {
     begin((*start)->still ? **start : with_settled_velocity(**start));
   }
   std::vector<FrameEstimate> frames;
-  for (const SensorPacket& next : waiting_) frames.push_back(step(next));
+  for (const SensorPacket& next : waiting_) {
+    auto frame = step(next);
+    if (!frame) return std::unexpected(frame.error());
+    frames.push_back(std::move(*frame));
+  }
   waiting_.clear();
   return frames;
 }
 
-FrameEstimate Odometry::step(const SensorPacket& packet) {
+/// The paper's method: propagation, LiDAR update, and from its posterior the thermal update; maps are written last.
+Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
   StageClock clock;
   FrameEstimate frame;
   FrameFacts& facts = frame.facts;
+  const bool look = packet.image && vision_;
+  if (look) vision_->look_at(*packet.image);
 
   const Propagation motion = propagate(estimate_, in_si_units(packet.imu), packet.end, rig_.imu, config_.gaps,
                                        packet.scan ? std::optional(packet.scan->start) : std::nullopt);
-  estimate_ = motion.predicted;
   clock.charge(Stage::propagate);
 
+  PointCloud dense;
+  SE3 T_W_scan = motion.predicted.mean.T_W_I();  // where the whole scan lies best
   if (packet.scan) {
     facts.has_scan = true;
     frame.cloud = deskew(*packet.scan, motion.path, rig_.T_I_L, rig_.lidar);
-    const PointCloud dense = downsample(frame.cloud, config_.scan.insert_voxels * config_.map.voxel_m);
+    dense = downsample(frame.cloud, config_.scan.insert_voxels * config_.map.voxel_m);
     const PointCloud sparse = thin(downsample(dense, config_.scan.match_voxels * config_.map.voxel_m),
                                    static_cast<std::size_t>(config_.scan.max_matched));
     clock.charge(Stage::deskew);
 
     const UpdateResult lidar = match(motion.sweep.estimate, sparse, facts);
-    estimate_ = at_end(motion, lidar).estimate;
+    advance_to(at_end(motion, lidar));
+    T_W_scan = lidar.posterior.mean.T_W_I();
     clock.charge(Stage::lidar);
+  } else {
+    advance_to({motion.predicted, motion.J_end_begin});
+  }
 
-    extend_map(dense, lidar.posterior.mean.T_W_I(), facts);  // once, where the whole scan lies best
+  if (look) {
+    vision_->add_points(frame.cloud.points_I, estimate_.mean.T_W_I(), packet.end);
+    const auto refined = vision_->refine(*packet.image, estimate_, facts.image, clock);
+    if (!refined) return std::unexpected(refined.error());
+    T_W_scan = refined->mean.T_W_I() * estimate_.mean.T_W_I().inverse() * T_W_scan;
+    estimate_ = *refined;
+  }
+  if (packet.scan) {
+    extend_map(dense, T_W_scan, facts);
     clock.charge(Stage::map);
   }
   facts.speed_mps = estimate_.mean.v_W.norm();
@@ -60,6 +85,11 @@ FrameEstimate Odometry::step(const SensorPacket& packet) {
   frame.drift_covariance = drift_.covariance_W();
   frame.stage_ms = clock.times_ms();
   return frame;
+}
+
+void Odometry::advance_to(const SmoothedEnd& end) {
+  estimate_ = end.estimate;
+  if (vision_) vision_->carry(end.J_end_begin);
 }
 
 UpdateResult Odometry::match(const Estimate& predicted, const PointCloud& points, FrameFacts& facts) {
@@ -95,6 +125,7 @@ void Odometry::extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts
     unmatched_ = 0;
     map_.clear();
     unobserved_ = {};
+    if (vision_) vision_->restart();
     drift_.restart(estimate_);
     estimate_.covariance.topRows<ix::pose_size>().setZero();
     estimate_.covariance.leftCols<ix::pose_size>().setZero();
@@ -133,7 +164,8 @@ Expected<std::optional<Start>> Odometry::try_start() const {
 bool Odometry::scans_show_no_turn(const Start& start) const {
   Odometry trial(rig_, config_);
   trial.begin(start);
-  for (const SensorPacket& packet : waiting_) trial.step(packet);
+  for (const SensorPacket& packet : waiting_)
+    if (!trial.step(packet)) return false;
   const SO3 turned = start.estimate.mean.R_W_I.inverse() * trial.estimate_.mean.R_W_I;
   const double elapsed_s = to_seconds(trial.estimate_.mean.time - start.estimate.mean.time);
   return trial.unmatched_ == 0 && log_so3(turned).norm() < 0.25 * start.stillness.mean_rate_rps.norm() * elapsed_s;
@@ -159,7 +191,7 @@ Start Odometry::with_settled_velocity(Start start) const {
     Estimate by_imu = start.estimate;
     for (std::size_t k = 0; k < std::min(packets, waiting_.size()); ++k) {
       by_imu = propagate(by_imu, trial.in_si_units(waiting_[k].imu), waiting_[k].end, rig_.imu, config_.gaps).predicted;
-      trial.step(waiting_[k]);
+      if (!trial.step(waiting_[k])) return start;
     }
     // Only what the scans have shown: along a corridor the velocity stays as unknown as it was.
     posterior = trial.estimate_.covariance.block<3, 3>(ix::v, ix::v);

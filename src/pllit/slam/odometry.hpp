@@ -1,6 +1,7 @@
 // The odometry: packets in, frame estimates out.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "pllit/slam/drift.hpp"
 #include "pllit/slam/health.hpp"
 #include "pllit/slam/stage_clock.hpp"
+#include "pllit/slam/vision.hpp"
 
 namespace pllit {
 
@@ -28,10 +30,12 @@ struct FrameEstimate {
 
 class Odometry {
  public:
-  Odometry(const Rig& rig, const Config& config);
+  /// Without `vision` images are not looked at.
+  Odometry(const Rig& rig, const Config& config, std::unique_ptr<Vision> vision = nullptr);
 
   /// Takes the next packet. Returns the frames that are now known: none while starting up, all of them once started,
-  /// then one a packet. An error where no start is possible.
+  /// then one a packet. Errors: no start is possible, an image
+  /// is not what the configuration says.
   Expected<std::vector<FrameEstimate>> process(SensorPacket packet);
 
   /// How it started, once it has.
@@ -43,8 +47,9 @@ class Odometry {
   bool scans_show_no_turn(const Start& start) const;
   void begin(const Start& start);
   Start with_settled_velocity(Start start) const;
-  FrameEstimate step(const SensorPacket& packet);
+  Expected<FrameEstimate> step(const SensorPacket& packet);
   UpdateResult match(const Estimate& predicted, const PointCloud& points, FrameFacts& facts);
+  void advance_to(const SmoothedEnd& end);
   void extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts& facts);
   std::vector<ImuSample> in_si_units(std::vector<ImuSample> imu) const;
 
@@ -56,6 +61,7 @@ class Odometry {
   std::vector<SensorPacket> waiting_;  ///< until started
   std::optional<Start> start_;
   Estimate estimate_;
+  std::unique_ptr<Vision> vision_;
   DegenerateDirections unobserved_;  ///< of the last scan
   Time last_match_;
   int unmatched_ = 0;  ///< scans in a row

@@ -8,8 +8,13 @@ namespace {
 
 class Run {
  public:
-  Run(EventSource& source, const Rig& rig, const Config& config, const RunHooks& hooks, RunSummary& summary)
-      : source_(source), hooks_(hooks), summary_(summary), assembler_(rig), odometry_(rig, config) {}
+  Run(EventSource& source, const Rig& rig, const Config& config, std::unique_ptr<Vision> vision, const RunHooks& hooks,
+      RunSummary& summary)
+      : source_(source),
+        hooks_(hooks),
+        summary_(summary),
+        assembler_(rig, {.images = vision != nullptr, .image_spacing = config.vision.image_spacing}),
+        odometry_(rig, config, std::move(vision)) {}
 
   Expected<void> to_the_end() {
     while (!hooks_.stop.stop_requested()) {
@@ -119,7 +124,9 @@ bool RunSummary::was_degraded() const {
 Expected<void> run_odometry(EventSource& source, const Rig& rig, const Config& config, const RunHooks& hooks,
                             RunSummary& summary) {
   const auto begin = std::chrono::steady_clock::now();
-  Run run(source, rig, config, hooks, summary);
+  auto vision = make_vision(rig, config.vision);
+  if (!vision) return std::unexpected(vision.error());
+  Run run(source, rig, config, std::move(*vision), hooks, summary);
   const auto result = run.to_the_end();
   run.finish();
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -1,0 +1,38 @@
+// Keys of the camera's part.
+#include "pllit/slam/config_section.hpp"
+
+namespace pllit {
+
+void list_thermal(Section section, VisionConfig& config) {
+  section.add_switch(PLLIT_KEY(enabled), "Refine the LiDAR's pose with the images, thermal or visible.");
+  section.add_switch(PLLIT_KEY(photometric), "Calibrate the greys of 8-bit images against gain control.");
+  section.add_switch("weights", config.residuals.weights, "Give points on matched lines more weight.");
+  section.add_switch("lines", config.residuals.lines, "Use explicit lines of the map.");
+}
+
+void list_vision(Section section, VisionConfig& config) {
+  section.add("image_spacing_s", config.image_spacing, "Images that follow sooner are left out.", "s", {0.0, 10.0});
+  section.add(PLLIT_KEY(depth_window_s), "LiDAR points that give features their depth are at most so old.", "s",
+              {0.05, 30.0});
+  section.add(PLLIT_KEY(most_innovation),
+              "An image whose innovation is more than this multiple of the expected is not believed.", "", {1.0, 1e6});
+  section.add(PLLIT_KEY(least_inliers), "Fewer residuals that fit tell too little.", "", {3.0, 1e6});
+  section.add("most_points", config.classical.most_points, "Features of an image, at most.", "", {20.0, 10000.0});
+  section.add("window_px", config.matching.window_px, "How far from the prediction a feature is looked for.", "px",
+              {1.0, 500.0});
+  section.add("keyframes", config.keyframes.most, "Keyframes that images are matched with.", "", {3.0, 50.0});
+  section.add("point_sigma_px", config.residuals.point_sigma_px, "Noise of a matched point, one sigma.", "px",
+              {0.05, 50.0});
+  section.add("line_sigma_px", config.residuals.line_sigma_px, "Noise of a line's end across it, one sigma.", "px",
+              {0.05, 50.0});
+  section.add("gate", config.residuals.gate, "Residuals beyond this many standard deviations do not count.", "",
+              {0.1, 100.0});
+  section.add("max_information", config.residuals.max_information,
+              "Independent points that an image counts for at most; 0: every one counts.", "", {0.0, 1e6});
+  section.add("weight_gain", config.residuals.weight_gain, "Weight of a point on a line (the paper's eta).", "",
+              {1.0, 10.0});
+  section.add("weight_sigma_px", config.residuals.weight_sigma_px,
+              "Distance from the line at which the extra weight fades (the paper's sigma).", "px", {0.1, 50.0});
+}
+
+}  // namespace pllit

@@ -1,0 +1,21 @@
+// What one image came to, for the health record.
+#pragma once
+
+#include <string>
+
+#include "pllit/state/nav_state.hpp"
+
+namespace pllit {
+
+struct ImageFacts {
+  bool seen = false;    ///< there was one
+  bool used = false;    ///< it has refined the state
+  std::string refused;  ///< why it was not looked at, or not believed; empty otherwise
+  int points = 0, matches = 0, anchored = 0;  ///< features; with a keyframe's; of these on matched lines
+  int candidates = 0, inliers = 0;            ///< residuals
+  double innovation = 0.0;                    ///< normalised innovation squared over its expectation
+  double gain = 1.0, bias_grey = 0.0;         ///< photometric
+  Matrix6 information = Matrix6::Zero();      ///< about (theta, p), the keyframes taken as known
+};
+
+}  // namespace pllit

@@ -1,0 +1,179 @@
+#include "pllit/slam/vision.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <format>
+
+namespace pllit {
+namespace {
+
+/// Cosine of the angle from the axis to the corner that is farthest from it, with some margin for what moves into view.
+double cosine_of_corner(const Camera& camera) {
+  constexpr double margin_rad = 0.05;
+  double angle = 0.0;
+  for (const double u : {0.0, camera.width - 1.0})
+    for (const double v : {0.0, camera.height - 1.0}) {
+      const Vector3d ray = camera.ray({u, v});
+      angle = std::max(angle, std::atan2(ray.head<2>().norm(), ray.z()));
+    }
+  return std::cos(std::min(angle + margin_rad, M_PI));
+}
+
+}  // namespace
+
+Vision::Vision(const Rig& rig, const VisionConfig& config, std::unique_ptr<FeatureExtractor> extractor)
+    : rig_(rig), config_(config), extractor_(std::move(extractor)), least_cos_(cosine_of_corner(*rig.camera)) {}
+
+void Vision::look_at(const CameraFrame& image) {
+  looking_ = std::async(std::launch::async, [this, image] { return look(image); });
+}
+
+Expected<Vision::Look> Vision::look(const CameraFrame& image) const {
+  Look look{.verdict = judge(image, history_, config_.check)};
+  if (!look.verdict.usable()) return look;
+  if (image.counts.cols != rig_.camera->width || image.counts.rows != rig_.camera->height)
+    return input_error(std::format("images are {} x {} px, but the calibration (rig.camera.size_px) is for {} x {}",
+                                   image.counts.cols, image.counts.rows, rig_.camera->width, rig_.camera->height));
+  look.counts = one_channel(image.counts);
+  look.chain = chain_;
+  cv::Mat grey = look.counts;
+  if (grey.depth() == CV_16U) {
+    look.range = count_range(grey, range_, config_.grey);
+    grey = mapped(grey, *look.range);
+  } else if (config_.photometric) {
+    if (look.verdict.after_shutter) look.chain = restarted(chain_, grey);
+    grey = calibrated_image(grey, look.chain.curve);
+  }
+  auto features = extractor_->extract(grey);
+  if (!features) return std::unexpected(features.error());
+  look.features = std::move(*features);
+  look.around = greys_around(look.counts, look.features.points_px);
+  return look;
+}
+
+bool Vision::is_calibrated(const Look& look) const { return config_.photometric && look.counts.depth() == CV_8U; }
+
+void Vision::add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time) {
+  while (!points_.empty() && to_seconds(time - points_.front().time) > config_.depth_window_s) points_.pop_front();
+  const SE3 T_C_I = rig_.T_I_C.inverse();
+  const Eigen::Matrix3f R_C_I = T_C_I.rotation().cast<float>();
+  const Vector3f p_C_I = T_C_I.translation().cast<float>();
+  const Matrix3d R_W_I = T_W_I.rotation();
+  SeenPoints seen{.time = time, .points_W = {}};
+  for (const Vector3f& p_I : points_I) {
+    const Vector3f p_C = R_C_I * p_I + p_C_I;
+    if (p_C.z() < static_cast<float>(least_cos_) * p_C.norm()) continue;
+    seen.points_W.push_back((R_W_I * p_I.cast<double>() + T_W_I.translation()).cast<float>());
+  }
+  points_.push_back(std::move(seen));
+}
+
+Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prior, ImageFacts& facts,
+                                  StageClock& clock) {
+  assert(looking_.valid());
+  auto look = looking_.get();
+  clock.charge(Stage::features);
+  facts.seen = true;
+  if (!look) return std::unexpected(look.error());
+  history_ = remembered(image, look->verdict, history_);
+  facts.refused = look->verdict.reason;
+  if (!look->verdict.usable()) return prior;
+  range_ = look->range;
+  facts.points = static_cast<int>(look->features.points_px.size());
+
+  const SE3 T_W_C = prior.mean.T_W_I() * rig_.T_I_C;
+  const Tracks tracks = match_to_keyframes(look->features, T_W_C, keyframes_, *rig_.camera, config_.matching);
+  facts.matches = static_cast<int>(tracks.points.size());
+  facts.anchored = static_cast<int>(std::ranges::count_if(tracks.points, [](const auto& m) { return m.line_px >= 0; }));
+  clock.charge(Stage::track);
+
+  if (is_calibrated(*look))
+    chain_ = advanced(look->chain, look->counts, look->around, tracks, keyframes_, config_.chain).chain;
+  facts.gain = chain_.curve.gain;
+  facts.bias_grey = chain_.curve.bias;
+  clock.charge(Stage::photometric);
+
+  const Estimate posterior = update(prior, observe(look->features, tracks), facts);
+  if (wants_keyframe(tracks, keyframes_, look->features, image.time, rig_.camera->width, config_.keyframes)) {
+    if (keyframes_.size() >= config_.keyframes.most) {
+      const std::size_t gone = expendable(tracks, keyframes_);
+      keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(gone));
+      remove_clone(clones_, gone);
+    }
+    keep(std::move(*look), image.time, posterior);
+  }
+  clock.charge(Stage::thermal);
+  return posterior;
+}
+
+ImageObservations Vision::observe(const Features& features, const Tracks& tracks) const {
+  ImageObservations observations;
+  for (const PointMatch& match : tracks.points) {
+    const Keyframe& keyframe = keyframes_[match.keyframe];
+    const auto reference = static_cast<std::size_t>(match.reference);
+    const auto& depth = keyframe.depths[reference];
+    if (!depth) continue;
+    const Vector3d ray_K = rig_.camera->ray(keyframe.features.points_px[reference].cast<double>());
+    observations.points.push_back(
+        {.keyframe = match.keyframe,
+         .p_K_m = depth->range_m * ray_K,
+         .sigma_ray_m = depth->sigma_m,
+         .observed_px = features.points_px[static_cast<std::size_t>(match.current)].cast<double>(),
+         .line_px = match.line_px});
+  }
+  return observations;
+}
+
+/// Stage II of the paper's sequential filter; an image whose innovation contradicts the prior is not believed at all.
+Estimate Vision::update(const Estimate& prior, const ImageObservations& observations, ImageFacts& facts) {
+  const Eigen::MatrixXd covariance = joint_covariance(prior, clones_);
+  const auto linearize = [&](const NavState& state) {
+    return linearize_image(state, clones_.T_W_I, observations, rig_, config_.residuals, covariance);
+  };
+  JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{});
+  facts.candidates = result.last.candidates;
+  facts.inliers = result.last.inliers;
+  if (facts.inliers < config_.least_inliers) return prior;
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(covariance.rows());
+  moved.head<error_index::size>() = boxminus(result.posterior.mean, prior.mean);
+  facts.innovation = innovation_ratio(result.last, moved, covariance);
+  if (facts.innovation > config_.most_innovation) {
+    facts.refused = std::format("image contradicts the prediction (innovation {:.1f} times the expected)", facts.innovation);
+    return prior;
+  }
+  facts.used = true;
+  facts.information = result.last.H.topLeftCorner<6, 6>();
+  clones_ = std::move(result.clones);
+  return result.posterior;
+}
+
+void Vision::keep(Look look, Time time, const Estimate& posterior) {
+  Keyframe keyframe{.id = next_id_++, .time = time, .T_W_C = posterior.mean.T_W_I() * rig_.T_I_C};
+  keyframe.features = std::move(look.features);
+  std::vector<Vector3f> points_W;
+  for (const SeenPoints& seen : points_) points_W.insert(points_W.end(), seen.points_W.begin(), seen.points_W.end());
+  const DepthImage depth(points_W, keyframe.T_W_C.inverse(), *rig_.camera, config_.depth);
+  std::vector<Vector3d> points_K;
+  for (const Eigen::Vector2f& pixel : keyframe.features.points_px) {
+    keyframe.depths.push_back(depth.at(pixel.cast<double>()));
+    if (const auto& found = keyframe.depths.back())
+      points_K.push_back(found->range_m * rig_.camera->ray(pixel.cast<double>()));
+  }
+  set_greys(keyframe, look.around, look.counts.depth() == CV_8U ? chain_.curve : GreyCurve{});
+  add_clone(clones_, posterior);
+  clones_.covariance.bottomRightCorner<6, 6>() += keyframe_noise(points_K, rig_, config_.residuals.point_sigma_px);
+  keyframes_.push_back(std::move(keyframe));
+}
+
+Expected<std::unique_ptr<Vision>> make_vision(const Rig& rig, const VisionConfig& config) {
+  if (!rig.camera || !config.enabled) return nullptr;
+  return std::make_unique<Vision>(rig, config, std::make_unique<ClassicalExtractor>(config.classical));
+}
+
+void Vision::restart() {
+  keyframes_.clear();
+  clones_ = {};
+  points_.clear();
+}
+
+}  // namespace pllit

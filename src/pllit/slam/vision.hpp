@@ -1,0 +1,77 @@
+// What the camera adds to the odometry: keyframes, tracks, and the refinement of the LiDAR's posterior (the paper's
+// "Thermal-Visual Measurement Model" and stage II of its sequential filter).
+#pragma once
+
+#include <deque>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pllit/sensor/rig.hpp"
+#include "pllit/slam/image_facts.hpp"
+#include "pllit/slam/stage_clock.hpp"
+#include "pllit/slam/vision_config.hpp"
+#include "pllit/state/clones.hpp"
+#include "pllit/thermal/keyframe.hpp"
+#include "pllit/thermal/observations.hpp"
+
+namespace pllit {
+
+class Vision {
+ public:
+  /// The rig must have a camera.
+  Vision(const Rig& rig, const VisionConfig& config, std::unique_ptr<FeatureExtractor> extractor);
+
+  /// Begins to look for features in a thread of its own; refine() with the same image comes next.
+  void look_at(const CameraFrame& image);
+  /// The state's error has become J times what it was, plus what keyframes know nothing of.
+  void carry(const Matrix18& J_now_before) { pllit::carry(clones_, J_now_before); }
+  /// LiDAR points in I at `time`: where features will find their depth.
+  void add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time);
+  /// The state after this image; `prior` where it is of no use. Errors are the extractor's.
+  Expected<Estimate> refine(const CameraFrame& image, const Estimate& prior, ImageFacts& facts, StageClock& clock);
+  /// Forgets what was built on poses that are not to be trusted any more.
+  void restart();
+
+  /// Raw to calibrated greys of the last image.
+  const GreyCurve& curve() const { return chain_.curve; }
+
+ private:
+  /// What is found in an image without knowing where it was taken.
+  struct Look {
+    ImageVerdict verdict;
+    cv::Mat counts, around;  ///< one channel, raw; greys_around() the points
+    PhotometricChain chain;  ///< that it was corrected with
+    std::optional<CountRange> range;
+    Features features;
+  };
+  Expected<Look> look(const CameraFrame& image) const;
+  ImageObservations observe(const Features& features, const Tracks& tracks) const;
+  Estimate update(const Estimate& prior, const ImageObservations& observations, ImageFacts& facts);
+  void keep(Look look, Time time, const Estimate& posterior);
+  bool is_calibrated(const Look& look) const;
+
+  Rig rig_;
+  VisionConfig config_;
+  std::unique_ptr<FeatureExtractor> extractor_;
+  double least_cos_;  ///< of the angle from the axis to the image's corners
+  std::future<Expected<Look>> looking_;
+  ImageHistory history_;
+  PhotometricChain chain_;
+  std::optional<CountRange> range_;
+  std::vector<Keyframe> keyframes_;
+  Clones clones_;  ///< poses of the keyframes, in the same order
+  struct SeenPoints {
+    Time time;
+    std::vector<Vector3f> points_W;
+  };
+  std::deque<SeenPoints> points_;
+  std::uint32_t next_id_ = 0;
+};
+
+/// Nothing where the rig has no camera or the configuration wants none. Errors: the extractor's.
+Expected<std::unique_ptr<Vision>> make_vision(const Rig& rig, const VisionConfig& config);
+
+}  // namespace pllit

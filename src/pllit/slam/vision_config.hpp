@@ -1,0 +1,34 @@
+// What a user may set of the camera's part.
+#pragma once
+
+#include <string>
+
+#include "pllit/thermal/classical_extractor.hpp"
+#include "pllit/thermal/depth.hpp"
+#include "pllit/thermal/grey_input.hpp"
+#include "pllit/thermal/image_check.hpp"
+#include "pllit/thermal/keyframe_window.hpp"
+#include "pllit/thermal/matching.hpp"
+#include "pllit/thermal/photometric_chain.hpp"
+#include "pllit/thermal/visual_residuals.hpp"
+
+namespace pllit {
+
+struct VisionConfig {
+  bool enabled = true;      ///< where the rig has a camera and the recording images
+  bool photometric = true;  ///< calibrate the greys of 8-bit images
+  Duration image_spacing = std::chrono::milliseconds(70);  ///< images that follow sooner are left out
+  double depth_window_s = 1.0;      ///< LiDAR points that give depth are at most so old
+  double most_innovation = 4.0;     ///< normalised innovation over its expectation above which an image is not believed
+  int least_inliers = 12;           ///< fewer residuals that fit tell too little
+  ClassicalConfig classical;
+  ImageCheckConfig check;
+  GreyInputConfig grey;
+  ChainConfig chain;
+  MatchConfig matching;
+  KeyframeConfig keyframes;
+  DepthConfig depth;
+  VisualConfig residuals;
+};
+
+}  // namespace pllit
