@@ -21,11 +21,12 @@ struct FeatureDepth {
 /// The vectors over points are as long as features.points_px.
 struct Keyframe {
   std::uint32_t id = 0;
-  Time time;
+  Time time{};
   SE3 T_W_C = SE3::Identity();
-  Features features;
-  std::vector<float> greys;                         ///< calibrated, at the points
-  std::vector<std::optional<FeatureDepth>> depths;  ///< of the points; nothing where the LiDAR saw none
+  Features features{};
+  std::vector<float> greys{};                       ///< calibrated, at the points
+  cv::Mat greys_around{};                           ///< calibrated, at the points and around them (photometric_chain.hpp)
+  std::vector<std::optional<FeatureDepth>> depths{};///< of the points; nothing where the LiDAR saw none
 };
 
 struct PointMatch {

@@ -1,0 +1,29 @@
+#include "pllit/thermal/classical_extractor.hpp"
+
+#include <format>
+
+#include "pllit/thermal/patch_descriptor.hpp"
+
+namespace pllit {
+
+Expected<Features> ClassicalExtractor::extract(const cv::Mat& grey) {
+  constexpr int kLeast_px = 16;
+  if (grey.type() != CV_8UC1 || grey.rows < kLeast_px || grey.cols < kLeast_px)
+    return input_error(
+        std::format("features need an 8-bit image of one channel and at least {0} x {0} pixels; this one has {1} x {2} "
+                    "of OpenCV's type {3}",
+                    kLeast_px, grey.cols, grey.rows, grey.type()));
+  Features features;
+  const std::vector<Corner> corners =
+      spread_evenly(corners_of(contrast_normalised(grey, config_.corners), config_.corners), config_.most_points,
+                    static_cast<float>(config_.most_radius_px));
+  for (const Corner& corner : corners) {
+    features.points_px.push_back(corner.at_px);
+    features.scores.push_back(corner.strength);
+  }
+  features.descriptors = describe_patches(grey, features.points_px);
+  features.lines = line_segments(grey, config_.lines);
+  return features;
+}
+
+}  // namespace pllit

@@ -1,0 +1,36 @@
+// Corners of images whose contrast differs from place to place and from frame to frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+namespace pllit {
+
+struct Corner {
+  Eigen::Vector2f at_px = Eigen::Vector2f::Zero();
+  float strength = 0.0F;
+};
+
+struct CornerConfig {
+  double blur_px = 1.0;          ///< sigma, against the sensor's noise
+  int contrast_window_px = 33;   ///< side of the square whose contrast is divided out
+  double contrast_floor = 3.0;   ///< grey: contrast of this order is noise
+  int window_px = 5;             ///< side of the square over which gradients are summed
+  double least_strength = 2e-4;  ///< squared normalised contrast a pixel
+  int margin_px = 6;             ///< nothing nearer to the image's border
+};
+
+/// Grey less the mean around it, over the standard deviation around it plus the floor; CV_32FC1 of a CV_8UC1 image.
+/// What an affine change of the greys does to it is small where the contrast is well above the floor.
+cv::Mat contrast_normalised(const cv::Mat& grey, const CornerConfig& config);
+
+/// Local maxima of the smaller eigenvalue of the gradients' second moments (Shi and Tomasi 1994), to a fraction of a
+/// pixel, in the normalised image; best first.
+std::vector<Corner> corners_of(const cv::Mat& normalised, const CornerConfig& config);
+
+/// At most `most` of the corners, best first, no two nearer than a radius: the largest radius up to `most_radius_px`
+/// that leaves enough of them (in the manner of Bailo et al. 2018). `corners` are sorted best first.
+std::vector<Corner> spread_evenly(const std::vector<Corner>& corners, int most, float most_radius_px);
+
+}  // namespace pllit

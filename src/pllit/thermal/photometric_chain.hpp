@@ -1,0 +1,54 @@
+// Greys that mean the same from frame to frame: each image's curve from the keyframes that it is matched with.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pllit/thermal/keyframe.hpp"
+#include "pllit/thermal/photometric.hpp"
+
+namespace pllit {
+
+/// Raw greys (or counts) at each point and at eight places 6 px around it, a row a point, CV_32FC1: from an image that
+/// is slightly blurred, between pixels bilinearly, outside the image NaN. The places around are there because points
+/// lie on edges, where a fraction of a pixel moves the grey most, and because a curve needs the greys on both sides.
+/// image: CV_8UC1 or CV_16UC1.
+cv::Mat greys_around(const cv::Mat& image, std::span<const Eigen::Vector2f> points_px);
+
+/// Puts the greys of its image into a keyframe, through the image's curve. around: its greys_around().
+void set_greys(Keyframe& keyframe, const cv::Mat& around, const GreyCurve& curve);
+
+/// The greys that matches tell of: calibrated in their keyframe, raw in the image now. At most `most`, evenly over the
+/// matches.
+std::vector<GreyPair> grey_pairs(const Tracks& tracks, std::span<const Keyframe> window, const cv::Mat& around_now,
+                                 int most);
+
+struct ChainConfig {
+  PhotometricConfig fit{};
+  int most_pairs = 1500;
+};
+
+/// The chain's state between two images.
+struct PhotometricChain {
+  GreyCurve curve;    ///< of the last image: what the next one is corrected with before features are sought
+  cv::Mat quantiles;  ///< of the last image's calibrated greys; empty before the first image
+};
+
+/// The state to correct an image with that comes after a shutter event or a gap, when the last image's curve says
+/// nothing about it: the curve that gives it the calibrated greys of the last image, quantile by quantile, in gain and
+/// bias. The same chain where there was no image. grey: CV_8UC1.
+PhotometricChain restarted(const PhotometricChain& chain, const cv::Mat& grey);
+
+struct ChainStep {
+  PhotometricChain chain;
+  PhotometricFit fit;
+};
+
+/// An image's own curve, from its matches with all keyframes of the window (more than the paper's single reference:
+/// what one hand-over gets wrong the others correct), starting at the chain's. grey: CV_8UC1, raw.
+ChainStep advanced(const PhotometricChain& chain, const cv::Mat& grey, const cv::Mat& around_now, const Tracks& tracks,
+                   std::span<const Keyframe> window, const ChainConfig& config);
+
+}  // namespace pllit
