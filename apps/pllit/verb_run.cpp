@@ -140,7 +140,7 @@ class SessionRun {
 Expected<ExitCode> run_session(const Options& options) {
   const auto config = read_config(options.config, options.settings);
   if (!config) return std::unexpected(config.error());
-  auto source = open_source(options.sources, *config);
+  auto source = open_source(options.sources, *config, config->vision.enabled ? Images::wanted : Images::skipped);
   if (!source) return std::unexpected(source.error());
   auto truth = truth_of(options, *source);
   if (!truth) return std::unexpected(truth.error());

@@ -95,7 +95,7 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prio
 
   const Estimate posterior = update(prior, observe(look->features, tracks), facts);
   if (wants_keyframe(tracks, keyframes_, look->features, image.time, rig_.camera->width, config_.keyframes)) {
-    if (keyframes_.size() >= config_.keyframes.most) {
+    if (std::ssize(keyframes_) >= config_.keyframes.most) {
       const std::size_t gone = expendable(tracks, keyframes_);
       keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(gone));
       remove_clone(clones_, gone);

@@ -42,10 +42,10 @@ class Vision {
   /// What is found in an image without knowing where it was taken.
   struct Look {
     ImageVerdict verdict;
-    cv::Mat counts, around;  ///< one channel, raw; greys_around() the points
-    PhotometricChain chain;  ///< that it was corrected with
-    std::optional<CountRange> range;
-    Features features;
+    cv::Mat counts{}, around{};  ///< one channel, raw; greys_around() the points
+    PhotometricChain chain{};    ///< that it was corrected with
+    std::optional<CountRange> range{};
+    Features features{};
   };
   Expected<Look> look(const CameraFrame& image) const;
   ImageObservations observe(const Features& features, const Tracks& tracks) const;

@@ -9,7 +9,7 @@
 namespace pllit {
 
 struct KeyframeConfig {
-  std::size_t most = 8;  ///< keyframes in a window
+  int most = 8;  ///< keyframes in a window
   /// With fewer matches with the last keyframe than both this share of its points and this number, the image becomes
   /// one.
   double least_share = 0.55;
