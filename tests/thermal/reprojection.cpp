@@ -52,13 +52,10 @@ LineObservation random_line(Random& random, const Scene& scene) {
   const SE3 T_W_C = scene.T_W_I * scene.rig.T_I_C;
   const Camera& camera = *scene.rig.camera;
   const Vector3d a_W = T_W_C.act(random_point_C(random, camera)), b_W = T_W_C.act(random_point_C(random, camera));
-  LineObservation line{.line = test::landmark_between(a_W, b_W, 0.02)};
   const auto near = [&](const Vector3d& p_W) {
     return Vector2d(*camera.project(T_W_C.inverse().act(p_W)) + Vector2d(random.normal(3.0), random.normal(3.0)));
   };
-  line.start_px = near(a_W);
-  line.end_px = near(b_W);
-  return line;
+  return {.line = test::landmark_between(a_W, b_W, 0.02), .start_px = near(a_W), .end_px = near(b_W)};
 }
 
 TEST(PointResidual, DerivativesToBothPosesMatchCentralDifferences) {
@@ -106,7 +103,7 @@ TEST(PointResidual, OfAPointThatIsSeenWhereItIsIsZero) {
                                .observed_px = *scene.rig.camera->project({0.4, -0.3, 5.0})};
   const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig);
   EXPECT_LT(at->r_px.norm(), 1e-9);
-  EXPECT_LT(at->model_px2.norm(), 1e-9);                      // without parallax depth does not matter
+  EXPECT_LT(at->model_px2.norm(), 1e-9);                                    // without parallax depth does not matter
   EXPECT_LT((at->J_now + at->J_keyframe).norm(), 1e-9 * at->J_now.norm());  // nor does a motion of both
 }
 
@@ -125,9 +122,8 @@ TEST(LineResidual, DerivativesToThePoseMatchCentralDifferences) {
       const LineObservation line = random_line(random, scene);
       const auto at = line_residual(scene.T_W_I, line, scene.rig);
       ASSERT_TRUE(at);
-      const Matrix2x6 now = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return line_residual(moved(scene.T_W_I, d), line, scene.rig)->residual.r_px;
-      });
+      const Matrix2x6 now = test::numerical_jacobian<2, 6>(
+          [&](const Vector6& d) { return line_residual(moved(scene.T_W_I, d), line, scene.rig)->residual.r_px; });
       EXPECT_LT((at->residual.J_now - now).norm(), 1e-4 * now.norm());
     }
 }

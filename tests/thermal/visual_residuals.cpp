@@ -32,10 +32,14 @@ struct Noise {
 Vector3d wall_point(Random& random, double x) {
   const double across = random.uniform(-1.2, 1.2);
   switch (static_cast<int>(random.uniform(0.0, 4.0))) {
-    case 0: return {x, -1.2, across};
-    case 1: return {x, 1.2, across};
-    case 2: return {x, across, -1.2};
-    default: return {x, across, 1.2};
+    case 0:
+      return {x, -1.2, across};
+    case 1:
+      return {x, 1.2, across};
+    case 2:
+      return {x, across, -1.2};
+    default:
+      return {x, across, 1.2};
   }
 }
 
@@ -130,8 +134,8 @@ TEST(VisualResiduals, GradientMatchesCentralDifferencesOfTheCost) {
 TEST(VisualResiduals, InformationIsThatOfAllResidualsStackedUp) {
   Random random(32);
   const Corridor corridor = corridor_of(random, {.depth_m = 0.0, .line_m = 0.0});
-  const VisualConfig config{.point_sigma_px = 1.3, .line_sigma_px = 1.3, .loss = 1e6, .max_information = 0.0,
-                            .weights = false};
+  const VisualConfig config{
+      .point_sigma_px = 1.3, .line_sigma_px = 1.3, .loss = 1e6, .max_information = 0.0, .weights = false};
   const JointEquations at = linearize_image(corridor.now, corridor.keyframes, corridor.seen, corridor.rig, config);
   // One residual at a time: b of a problem with one residual r and weight W is -J'Wr, squared is r'Wr.
   MatrixXd H = MatrixXd::Zero(36, 36);
@@ -155,8 +159,7 @@ TEST(VisualResiduals, InformationIsThatOfAllResidualsStackedUp) {
     NavState now = corridor.now;
     std::vector<SE3> keyframes = corridor.keyframes;
     move(now, keyframes, step * VectorXd::Unit(36, i));
-    const VectorXd slope =
-        (at.b - linearize_image(now, keyframes, corridor.seen, corridor.rig, config).b) / step;
+    const VectorXd slope = (at.b - linearize_image(now, keyframes, corridor.seen, corridor.rig, config).b) / step;
     EXPECT_LT((slope - at.H.col(i)).norm(), 0.05 * at.H.col(i).norm() + 1e-9) << i;
   }
 }
@@ -292,10 +295,10 @@ Update update(const NavState& prior, const std::vector<SE3>& keyframes, const Ma
 struct Prior {
   MatrixXd root = MatrixXd::Zero(36, 36);  ///< of the covariance
 
-  Prior() {
+  explicit Prior(double turn_rad, double shift_m) {
     const auto block = [&](int row, int column) { return root.block<6, 6>(row, column); };
     Vector6 sigmas;
-    sigmas << Vector3d::Constant(0.002), Vector3d::Constant(0.01);
+    sigmas << Vector3d::Constant(turn_rad), Vector3d::Constant(shift_m);
     const Matrix6 step = sigmas.asDiagonal();
     block(18, 18) = block(24, 18) = block(30, 18) = block(0, 18) = step;
     block(24, 24) = block(30, 24) = block(0, 24) = step;
@@ -310,11 +313,11 @@ struct Prior {
 struct Consistency {
   Vector6 normalised = Vector6::Zero();  ///< mean squared error over variance, of theta and p
   double rms_along_m = 0.0;
-  double innovation = 0.0;  ///< mean ratio
+  Innovation innovation{.misfit = 0.0, .correction = 0.0};  ///< mean ratios
 };
-Consistency simulate(const Noise& noise, const VisualConfig& config, unsigned seed, const SE3& wrong_extrinsic) {
+Consistency simulate(const Noise& noise, const VisualConfig& config, unsigned seed,
+                     const Prior& prior = Prior(0.002, 0.01), const SE3& wrong_extrinsic = SE3::Identity()) {
   constexpr int trials = 30;
-  const Prior prior;
   Consistency mean;
   for (int trial = 0; trial < trials; ++trial) {
     Random random(seed + static_cast<unsigned>(trial));
@@ -329,21 +332,24 @@ Consistency simulate(const Noise& noise, const VisualConfig& config, unsigned se
     const Vector6 error = boxminus(now, corridor.now).head<6>();
     mean.normalised += error.cwiseAbs2().cwiseQuotient(result.covariance.diagonal().head<6>()) / trials;
     mean.rms_along_m += error[3] * error[3] / trials;
-    mean.innovation += innovation_ratio(result.last, result.moved, prior.covariance()) / trials;
+    const Innovation shown = innovation(result.last, result.moved, prior.covariance());
+    mean.innovation.misfit += shown.misfit / trials;
+    mean.innovation.correction += shown.correction / trials;
   }
   mean.rms_along_m = std::sqrt(mean.rms_along_m);
   return mean;
 }
 
 TEST(VisualUpdate, RecoversTheMotionAlongACorridorAsWellAsItClaims) {
-  const Consistency points = simulate({}, {.max_information = 0.0, .weights = false, .lines = false}, 1000, SE3::Identity());
-  const Consistency both = simulate({}, {.max_information = 0.0, .weights = false}, 1000, SE3::Identity());
+  const Consistency points = simulate({}, {.max_information = 0.0, .weights = false, .lines = false}, 1000);
+  const Consistency both = simulate({}, {.max_information = 0.0, .weights = false}, 1000);
   for (const Consistency& mean : {points, both}) {
     for (int i = 0; i < 6; ++i) {
       EXPECT_GT(mean.normalised[i], 0.3) << i;
       EXPECT_LT(mean.normalised[i], 3.0) << i;
     }
-    EXPECT_NEAR(mean.innovation, 1.0, 0.25);
+    EXPECT_NEAR(mean.innovation.misfit, 1.0, 0.15);
+    EXPECT_NEAR(mean.innovation.correction, 1.0, 0.4);
     RecordProperty("rms_along_mm", std::to_string(1000.0 * mean.rms_along_m));
   }
   EXPECT_LT(points.rms_along_m, 0.03);  // from 0.3 m; the keyframes themselves are 0.01 to 0.03 m off
@@ -351,8 +357,7 @@ TEST(VisualUpdate, RecoversTheMotionAlongACorridorAsWellAsItClaims) {
 }
 
 TEST(VisualUpdate, SurvivesThirtyPercentOfGrossOutliers) {
-  const Consistency mean =
-      simulate({.false_share = 0.3}, {.max_information = 0.0, .weights = false}, 2000, SE3::Identity());
+  const Consistency mean = simulate({.false_share = 0.3}, {.max_information = 0.0, .weights = false}, 2000);
   for (int i = 0; i < 6; ++i) {
     EXPECT_GT(mean.normalised[i], 0.3) << i;
     EXPECT_LT(mean.normalised[i], 3.0) << i;
@@ -360,10 +365,18 @@ TEST(VisualUpdate, SurvivesThirtyPercentOfGrossOutliers) {
   EXPECT_LT(mean.rms_along_m, 0.03);
 }
 
+TEST(VisualUpdate, ShowsABadImageInTheMisfit) {
+  const VisualConfig config{.max_information = 0.0, .weights = false};
+  EXPECT_GT(simulate({.pixel_px = 2.5}, config, 4000).innovation.misfit, 1.5);
+}
+
 TEST(VisualUpdate, ShowsAWrongExtrinsicInTheInnovations) {
   const SE3 wrong = pose_from(exp_so3(Vector3d(0.0, 0.5 * M_PI / 180.0, 0.0)), Vector3d::Zero());
   const VisualConfig config{.max_information = 0.0, .weights = false};
-  EXPECT_GT(simulate({}, config, 3000, wrong).innovation, 1.5);
+  // A scan leaves but millimetres between the keyframes, except along the corridor.
+  const Prior prior(0.0005, 0.002);
+  EXPECT_NEAR(simulate({}, config, 3000, prior).innovation.correction, 1.0, 0.4);
+  EXPECT_GT(simulate({}, config, 3000, prior, wrong).innovation.correction, 2.0);
 }
 
 }  // namespace

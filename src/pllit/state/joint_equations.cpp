@@ -1,20 +1,26 @@
 #include "pllit/state/joint_equations.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cassert>
 
 namespace pllit {
 
-double innovation_ratio(const JointEquations& at_end, const Eigen::VectorXd& moved, const Eigen::MatrixXd& prior) {
+Innovation innovation(const JointEquations& at_end, const Eigen::VectorXd& moved, const Eigen::MatrixXd& prior) {
   assert(moved.size() == at_end.b.size() && prior.rows() == at_end.b.size());
-  if (at_end.inliers == 0) return 0.0;
-  // The innovation is r - J moved, and by the inversion lemma r'(R + J P J')^-1 r = r'Wr - b'(P^-1 + H)^-1 b.
+  if (at_end.inliers == 0) return {};
+  // With r0 = r - J moved the innovation, r0' (R + J P J')^-1 r0 is the least of |r0 + J x|^2 over R plus |x|^2 over P,
+  // which x = (P^-1 + H)^-1 b attains.
   const Eigen::VectorXd H_moved = at_end.H * moved;
-  const double squared = at_end.squared + 2.0 * moved.dot(at_end.b) + moved.dot(H_moved);
   const Eigen::VectorXd b = at_end.b + H_moved;
-  const Eigen::MatrixXd system = Eigen::MatrixXd::Identity(prior.rows(), prior.cols()) + prior * at_end.H;
-  const double explained = b.dot(system.partialPivLu().solve(prior * b));
-  return (squared - explained) / at_end.expected;
+  const double squared = at_end.squared + 2.0 * moved.dot(at_end.b) + moved.dot(H_moved);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> system(Eigen::MatrixXd::Identity(prior.rows(), prior.cols()) +
+                                                    prior * at_end.H);
+  const Eigen::VectorXd x = system.solve(prior * b);
+  const double correction = x.dot(b - at_end.H * x);  // x' P^-1 x
+  const double expected = system.solve(prior * at_end.H).trace();
+  return {.misfit = (squared - x.dot(b) - correction) / std::max(1.0, at_end.expected - expected),
+          .correction = correction / expected};
 }
 
 }  // namespace pllit

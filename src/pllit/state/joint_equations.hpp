@@ -7,8 +7,8 @@
 
 namespace pllit {
 
-/// As NormalEquations, over the errors of the state (error_index) and then those of n earlier poses, six each (theta, p;
-/// right perturbation): H = J'WJ and b = -J'Wr of size 18 + 6 n.
+/// As NormalEquations, over the errors of the state (error_index) and then those of n earlier poses, six each (theta,
+/// p; right perturbation): H = J'WJ and b = -J'Wr of size 18 + 6 n.
 struct JointEquations {
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
@@ -25,9 +25,16 @@ struct JointEquations {
   }
 };
 
-/// Normalised innovation squared over its mean: near 1 where prior, model and noise agree, far above it where a sensor
-/// contradicts what is known (a wrong extrinsic, a bad image). `at_end`: linearised where the update ended, `moved`:
-/// from the prior to there, `prior`: (18 + 6n) square covariance. 0 without inliers.
-double innovation_ratio(const JointEquations& at_end, const Eigen::VectorXd& moved, const Eigen::MatrixXd& prior);
+/// The normalised innovation squared of an update, in its two parts, each over its mean: near 1 where prior, model and
+/// noise agree. `misfit`: of the residuals that no state explains (a bad image); `correction`: how far the sensor wants
+/// the state from where the prior has it, in the prior's own metric (a wrong extrinsic or delay, which a thousand
+/// residuals would drown).
+struct Innovation {
+  double misfit = 1.0, correction = 1.0;
+};
+
+/// `at_end`: linearised where the update ended, `moved`: the errors from the prior to there, `prior`: (18 + 6n) square
+/// covariance.
+Innovation innovation(const JointEquations& at_end, const Eigen::VectorXd& moved, const Eigen::MatrixXd& prior);
 
 }  // namespace pllit

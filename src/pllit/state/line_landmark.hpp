@@ -7,6 +7,13 @@
 
 namespace pllit {
 
+/// Where the ray through a pixel of an observed line meets the near surface that owns the edge.
+struct EdgePoint {
+  Vector3d p_C = Vector3d::Zero();
+  double sigma_ray_m = 0.0;     ///< standard deviation along the ray
+  double sigma_across_m = 0.0;  ///< and across it, from the line's own error in the image
+};
+
 /// A straight edge of the world, fitted to LiDAR points. Its four degrees of freedom are the shifts of the points at
 /// `centroid_W - half_length_m d` and `centroid_W + half_length_m d` across the line, along two unit vectors that are
 /// normal to d: covariance is theirs, in the order (first end along u, first end along v, second end along u, along v).

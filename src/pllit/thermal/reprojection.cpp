@@ -89,8 +89,8 @@ std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_k
   residual.r_px = observation.observed_px - projection->pixel_px;
   residual.J_now << -J_pixel_I * skew(point_I), J_pixel_W;
   residual.J_keyframe << J_pixel_W * R_W_K * skew(point_K), -J_pixel_W;
-  const Vector2d per_sigma = J_pixel_W * (R_W_K * (rig.T_I_C.rotation() * observation.p_K_m.normalized())) *
-                             observation.sigma_ray_m;
+  const Vector2d per_sigma =
+      J_pixel_W * (R_W_K * (rig.T_I_C.rotation() * observation.p_K_m.normalized())) * observation.sigma_ray_m;
   residual.model_px2 = per_sigma * per_sigma.transpose();
   return residual;
 }

@@ -14,8 +14,8 @@ using Matrix2x6 = Eigen::Matrix<double, 2, 6>;
 /// Two numbers in pixels, observed minus predicted, linear in the errors (theta, p) of poses of I in W.
 struct ImageResidual {
   Eigen::Vector2d r_px = Eigen::Vector2d::Zero();
-  Matrix2x6 J_now = Matrix2x6::Zero();       ///< to the pose now
-  Matrix2x6 J_keyframe = Matrix2x6::Zero();  ///< to the keyframe's pose; zero for lines
+  Matrix2x6 J_now = Matrix2x6::Zero();                  ///< to the pose now
+  Matrix2x6 J_keyframe = Matrix2x6::Zero();             ///< to the keyframe's pose; zero for lines
   Eigen::Matrix2d model_px2 = Eigen::Matrix2d::Zero();  ///< covariance that the point's depth or the line brings along
 };
 
@@ -26,10 +26,10 @@ std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_k
 
 /// How a line lies in an image, beside its residual.
 struct LineResidual {
-  ImageResidual residual;   ///< of the start and of the end point across the projected line
+  ImageResidual residual;  ///< of the start and of the end point across the projected line
   Eigen::Matrix<double, 2, 4> J_line = Eigen::Matrix<double, 2, 4>::Zero();  ///< to LineLandmark's four shifts, px/m
-  double sin_turn = 0.0;    ///< of the angle between the observed and the projected line
-  double sin_plane = 0.0;   ///< of the angle between the plane through camera and line, and the image plane
+  double sin_turn = 0.0;   ///< of the angle between the observed and the projected line
+  double sin_plane = 0.0;  ///< of the angle between the plane through camera and line, and the image plane
 };
 
 /// The paper's point-to-line residual, in pixels: the end points are undistorted, and the distance is measured with the

@@ -56,9 +56,8 @@ class Sums {
     const double squared = residual.r_px.dot(information * residual.r_px);
     Matrix2x12 J;
     J << residual.J_now, residual.J_keyframe;
-    const double beyond = search_.size() == 0
-                              ? squared
-                              : residual.r_px.dot((noise + searched(J, at)).inverse() * residual.r_px);
+    const double beyond =
+        search_.size() == 0 ? squared : residual.r_px.dot((noise + searched(J, at)).inverse() * residual.r_px);
     if (const double gate2 = config_.gate * config_.gate; beyond > gate2) {
       equations_.cost += cauchy(squared * gate2 / beyond, config_.loss).cost;
       return;
@@ -146,9 +145,9 @@ std::vector<PointObservation> off_lines(std::span<const PointObservation> points
                                         std::span<const LineObservation> lines, double distance_px) {
   std::vector<PointObservation> kept;
   std::ranges::copy_if(points, std::back_inserter(kept), [&](const PointObservation& point) {
-    return point.line_px < 0.0 || std::ranges::none_of(lines, [&](const LineObservation& line) {
-             return beside(point.observed_px, line, distance_px);
-           });
+    return point.line_px < 0.0 ||
+           std::ranges::none_of(
+               lines, [&](const LineObservation& line) { return beside(point.observed_px, line, distance_px); });
   });
   return kept;
 }

@@ -1,5 +1,5 @@
-// What an image says about the pose: the paper's reprojection residuals of points and of explicit lines ("Thermal-Visual
-// Refinement") as normal equations.
+// What an image says about the pose: the paper's reprojection residuals of points and of explicit lines
+// ("Thermal-Visual Refinement") as normal equations.
 #pragma once
 
 #include <span>
