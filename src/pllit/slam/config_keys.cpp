@@ -119,6 +119,9 @@ void list(Section section, HealthConfig& config) {
   section.add(PLLIT_KEY(max_speed_mps), "A higher speed is impossible: lost.", "m/s", {1.0, 1000.0});
   section.add(PLLIT_KEY(silent_degraded_s), "Without a matched scan for this long: degraded.", "s", {0.05, 60.0});
   section.add(PLLIT_KEY(silent_lost_s), "Without a matched scan for this long: lost.", "s", {0.1, 600.0});
+  section.add(PLLIT_KEY(max_correction),
+              "Above this multiple of the expected correction by images, averaged, the frame is degraded.", "",
+              {1.0, 1e6});
   section.add(PLLIT_KEY(restart_after), "Scans in a row without a match before the map is begun anew.", "",
               {1.0, 1000.0});
 }

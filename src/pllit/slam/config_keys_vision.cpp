@@ -14,8 +14,8 @@ void list_vision(Section section, VisionConfig& config) {
   section.add("image_spacing_s", config.image_spacing, "Images that follow sooner are left out.", "s", {0.0, 10.0});
   section.add(PLLIT_KEY(depth_window_s), "LiDAR points that give features their depth are at most so old.", "s",
               {0.05, 30.0});
-  section.add(PLLIT_KEY(most_innovation),
-              "An image whose innovation is more than this multiple of the expected is not believed.", "", {1.0, 1e6});
+  section.add(PLLIT_KEY(most_misfit),
+              "An image whose residuals are more than this multiple of the expected is not believed.", "", {1.0, 1e6});
   section.add(PLLIT_KEY(least_inliers), "Fewer residuals that fit tell too little.", "", {3.0, 1e6});
   section.add("most_points", config.classical.most_points, "Features of an image, at most.", "", {20.0, 10000.0});
   section.add("window_px", config.matching.window_px, "How far from the prediction a feature is looked for.", "px",

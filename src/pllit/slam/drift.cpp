@@ -22,8 +22,10 @@ void MapDrift::move_to(const Vector3d& p_W) {
   p_W_ = p_W;
 }
 
-void MapDrift::add_scan(const Estimate& posterior, double new_share) {
-  covariance_W_ += config_.gain * new_share * new_share * pose_covariance_W(posterior);
+void MapDrift::add_scan(const Estimate& posterior, double new_share, const Eigen::Matrix3Xd& unobserved) {
+  Matrix6 observed = Matrix6::Identity();
+  observed.bottomRightCorner<3, 3>() -= unobserved * unobserved.transpose();
+  covariance_W_ += config_.gain * new_share * new_share * observed * pose_covariance_W(posterior) * observed;
 }
 
 void MapDrift::restart(const Estimate& estimate) { covariance_W_ += pose_covariance_W(estimate); }

@@ -23,8 +23,10 @@ class MapDrift {
 
   /// The robot has moved to p_W: an error in the map's heading becomes one in position.
   void move_to(const Vector3d& p_W);
-  /// A scan with this pose estimate has added `new_share` (0 to 1) of what it saw to the map.
-  void add_scan(const Estimate& posterior, double new_share);
+  /// A scan with this pose estimate has added `new_share` (0 to 1) of what it saw to the map. Along `unobserved`
+  /// (directions of motion in W, orthonormal columns) it was not placed against the map, so the filter's covariance
+  /// there is not one against the map but counts from the origin already.
+  void add_scan(const Estimate& posterior, double new_share, const Eigen::Matrix3Xd& unobserved);
   /// The map is begun anew at this estimate: all of its pose error is the new map's.
   void restart(const Estimate& estimate);
 

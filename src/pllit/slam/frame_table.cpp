@@ -18,8 +18,8 @@ std::vector<std::string> health_columns() {
   return {"time_s",     "state",     "reasons",       "points",     "candidates",    "inliers",       "residual_m",
           "iterations", "speed_mps", "sigma_x_m",     "sigma_y_m",  "sigma_z_m",     "sigma_yaw_deg", "share_x",
           "share_y",    "share_z",   "weakest_share", "degenerate", "since_match_s", "imu_gap_s",     "image",
-          "features",   "matches",   "anchored",      "image_inliers", "innovation",  "grey_gain",     "grey_bias",
-          "frame_ms"};
+          "features",   "matches",   "anchored",      "image_inliers", "misfit",      "correction",    "grey_gain",
+          "grey_bias",  "frame_ms"};
 }
 
 namespace {
@@ -63,7 +63,8 @@ std::vector<FrameCell> health_row(const FrameEstimate& frame) {
           count(facts.image.matches),
           count(facts.image.anchored),
           count(facts.image.inliers),
-          facts.image.innovation,
+          facts.image.misfit,
+          facts.image.correction,
           facts.image.gain,
           facts.image.bias_grey,
           std::accumulate(frame.stage_ms.begin(), frame.stage_ms.end(), 0.0)};

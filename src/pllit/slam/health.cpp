@@ -41,12 +41,17 @@ Health assess(const FrameFacts& facts, const HealthConfig& config) {
     mark(HealthState::degraded, std::format("no IMU data for {:.2f} s", facts.longest_imu_gap_s));
   if (!facts.has_scan && facts.since_match_s > config.silent_degraded_s)
     mark(HealthState::degraded, std::format("LiDAR silent for {:.1f} s", facts.since_match_s));
+  if (facts.image.correction > config.max_correction)
+    mark(HealthState::degraded,
+         std::format("images pull the pose away from the LiDAR's, {:.0f} times as hard as their noise explains; check "
+                     "rig.camera (T_I_C, delay_s, intrinsics_px)",
+                     facts.image.correction));
   if (facts.map_empty) return health;
   if (facts.has_scan && !facts.matched)
     mark(HealthState::degraded,
          std::format("scan not matched: {} of {} points fit the map", facts.inliers, facts.candidates));
   if (!facts.matched) return health;
-  if (facts.localizability.degenerate > 0)
+  if (facts.localizability.degenerate > 0 && !facts.image.holds)
     mark(HealthState::degraded, "LiDAR does not observe " + describe_degeneracy(facts.localizability));
   if (share < config.low_inlier_share)
     mark(HealthState::degraded, std::format("only {:.0f} % of the points fit the map", 100.0 * share));

@@ -21,6 +21,7 @@ struct HealthConfig {
   double max_speed_mps = 60.0;     ///< faster than this cannot be: lost
   double silent_degraded_s = 0.3;  ///< without a matched scan for this long: degraded
   double silent_lost_s = 5.0;      ///< without a matched scan for this long: lost
+  double max_correction = 10.0;    ///< images' correction of the LiDAR's pose over what is expected; above: degraded
   int restart_after = 10;          ///< scans in a row that do not match before the map is begun anew
 };
 

@@ -9,6 +9,42 @@ namespace pllit {
 
 namespace ix = error_index;
 
+namespace {
+
+/// Of the directions that a scan does not observe, those of motion rather than of turning: orthonormal, in W.
+Eigen::Matrix3Xd unobserved_shifts(const DegenerateDirections& unobserved) {
+  constexpr double mostly = 0.7;
+  Eigen::Matrix3Xd shifts(3, 0);
+  for (Eigen::Index i = 0; i < unobserved.cols(); ++i) {
+    Vector3d shift = unobserved.col(i).tail<3>();
+    if (shift.norm() < mostly) continue;
+    shift -= shifts * (shifts.transpose() * shift).eval();
+    if (shift.norm() < 0.5 * mostly) continue;
+    shifts.conservativeResize(Eigen::NoChange, shifts.cols() + 1);
+    shifts.rightCols<1>() = shift.normalized();
+  }
+  return shifts;
+}
+
+/// Whether an image knows the pose, its keyframes taken as known, along every direction that the scan does not observe.
+bool image_holds(const Matrix6& information, const DegenerateDirections& unobserved, const SO3& R_W_I) {
+  constexpr double shift_sigma_m = 0.05, turn_sigma_rad = 0.003, counts = 0.3;
+  const auto held = [](const Vector3d& direction, const Matrix3d& block, double sigma) {
+    if (direction.norm() < counts) return true;
+    const Vector3d unit = direction.normalized();
+    return unit.dot(block * unit) * sigma * sigma > 1.0;
+  };
+  for (Eigen::Index i = 0; i < unobserved.cols(); ++i) {
+    const Vector3d turn_I = R_W_I.inverse().act(unobserved.col(i).head<3>()), shift_W = unobserved.col(i).tail<3>();
+    if (!held(turn_I, information.topLeftCorner<3, 3>(), turn_sigma_rad) ||
+        !held(shift_W, information.bottomRightCorner<3, 3>(), shift_sigma_m))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 Odometry::Odometry(const Rig& rig, const Config& config, std::unique_ptr<Vision> vision)
     : rig_(rig),
       config_(config),
@@ -71,6 +107,7 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     if (!refined) return std::unexpected(refined.error());
     T_W_scan = refined->mean.T_W_I() * estimate_.mean.T_W_I().inverse() * T_W_scan;
     estimate_ = *refined;
+    facts.image.holds = facts.image.used && image_holds(facts.image.information, unobserved_, estimate_.mean.R_W_I);
   }
   if (packet.scan) {
     extend_map(dense, T_W_scan, facts);
@@ -134,7 +171,8 @@ void Odometry::extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts
   if (unmatched_ > 0) return;  // a pose that does not fit the map must not enter it
   last_match_ = estimate_.mean.time;
   drift_.move_to(estimate_.mean.p_W);
-  if (facts.matched) drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points);
+  if (facts.matched) drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points,
+                                       unobserved_shifts(unobserved_));
   map_.insert(points, T_W_I);
   map_.slide(estimate_.mean.p_W);
 }

@@ -136,11 +136,14 @@ Estimate Vision::update(const Estimate& prior, const ImageObservations& observat
   if (facts.inliers < config_.least_inliers) return prior;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(covariance.rows());
   moved.head<error_index::size>() = boxminus(result.posterior.mean, prior.mean);
-  facts.innovation = innovation_ratio(result.last, moved, covariance);
-  if (facts.innovation > config_.most_innovation) {
-    facts.refused = std::format("image contradicts the prediction (innovation {:.1f} times the expected)", facts.innovation);
+  const Innovation news = innovation(result.last, moved, covariance);
+  facts.misfit = news.misfit;
+  if (news.misfit > config_.most_misfit) {
+    facts.refused = std::format("residuals are {:.1f} times what their noise explains", news.misfit);
     return prior;
   }
+  correction_ += 0.03 * (news.correction - correction_);
+  facts.correction = correction_;
   facts.used = true;
   facts.information = result.last.H.topLeftCorner<6, 6>();
   clones_ = std::move(result.clones);

@@ -69,6 +69,7 @@ class Vision {
   };
   std::deque<SeenPoints> points_;
   std::uint32_t next_id_ = 0;
+  double correction_ = 1.0;  ///< running mean
 };
 
 /// Nothing where the rig has no camera or the configuration wants none. Errors: the extractor's.

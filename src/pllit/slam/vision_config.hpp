@@ -19,7 +19,7 @@ struct VisionConfig {
   bool photometric = true;  ///< calibrate the greys of 8-bit images
   Duration image_spacing = std::chrono::milliseconds(70);  ///< images that follow sooner are left out
   double depth_window_s = 1.0;      ///< LiDAR points that give depth are at most so old
-  double most_innovation = 4.0;     ///< normalised innovation over its expectation above which an image is not believed
+  double most_misfit = 4.0;         ///< of the residuals over what is expected of them: above, an image is not believed
   int least_inliers = 12;           ///< fewer residuals that fit tell too little
   ClassicalConfig classical;
   ImageCheckConfig check;

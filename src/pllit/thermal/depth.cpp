@@ -1,0 +1,216 @@
+#include "pllit/thermal/depth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pllit/thermal/near_surface.hpp"
+
+namespace pllit {
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector2f;
+
+constexpr double kRad = M_PI / 180.0;
+
+/// What part of the unit sphere an image covers.
+struct Field {
+  float azimuth_min = 10.0F, azimuth_max = -10.0F, elevation_min = 10.0F, elevation_max = -10.0F;
+};
+
+Vector2f azimuth_elevation(const Vector3f& direction) {
+  return {std::atan2(direction.x(), direction.z()), std::asin(std::clamp(direction.y(), -1.0F, 1.0F))};
+}
+
+Field field_of(const Camera& camera, float margin) {
+  Field field;
+  const auto cover = [&](double u, double v) {
+    const Vector2f at = azimuth_elevation(camera.ray({u, v}).cast<float>());
+    field.azimuth_min = std::min(field.azimuth_min, at.x() - margin);
+    field.azimuth_max = std::max(field.azimuth_max, at.x() + margin);
+    field.elevation_min = std::min(field.elevation_min, at.y() - margin);
+    field.elevation_max = std::max(field.elevation_max, at.y() + margin);
+  };
+  constexpr int steps = 16;
+  for (int i = 0; i <= steps; ++i) {
+    const double u = (camera.width - 1.0) * i / steps, v = (camera.height - 1.0) * i / steps;
+    cover(u, 0.0);
+    cover(u, camera.height - 1.0);
+    cover(0.0, v);
+    cover(camera.width - 1.0, v);
+  }
+  return field;
+}
+
+}  // namespace
+
+/// The points around a ray, in room that is made once.
+class DepthImage::Neighbours {
+ public:
+  static constexpr int most = 160, least = 5;
+
+  bool full() const { return count_ == most; }
+  int count() const { return count_; }
+  float nearest_range_m() const { return nearest_range_m_; }
+  void add(const RaysNeighbour& neighbour) {
+    if (full()) return;
+    all_[count_++] = neighbour;
+    nearest_range_m_ = std::min(nearest_range_m_, neighbour.range_m);
+  }
+  /// Leaves those within the angle, or the nearest few where fewer are.
+  void keep_within(float angle2) {
+    if (count_ <= least) return;
+    const auto nearer = [](const RaysNeighbour& a, const RaysNeighbour& b) { return a.angle2 < b.angle2; };
+    std::nth_element(all_.begin(), all_.begin() + least - 1, all_.begin() + count_, nearer);
+    const float limit = std::max(angle2, all_[least - 1].angle2);
+    const auto end = std::remove_if(all_.begin(), all_.begin() + count_,
+                                    [limit](const RaysNeighbour& neighbour) { return neighbour.angle2 > limit; });
+    count_ = static_cast<int>(end - all_.begin());
+  }
+  std::span<RaysNeighbour> by_range() {
+    std::sort(all_.begin(), all_.begin() + count_,
+              [](const RaysNeighbour& a, const RaysNeighbour& b) { return a.range_m < b.range_m; });
+    return {all_.data(), static_cast<std::size_t>(count_)};
+  }
+
+ private:
+  std::array<RaysNeighbour, most> all_;
+  int count_ = 0;
+  float nearest_range_m_ = 1e9F;
+};
+
+DepthImage::DepthImage(std::span<const Vector3f> points_P, const SE3& T_C_P, const Camera& camera,
+                       const DepthConfig& config)
+    : camera_(camera), config_(config), bin_rad_(static_cast<float>(config.bin_deg * kRad)) {
+  const Field field = field_of(camera, static_cast<float>(config.reach_deg * kRad));
+  azimuth_min_ = field.azimuth_min;
+  elevation_min_ = field.elevation_min;
+  least_cos_elevation_ = std::cos(std::max(std::abs(field.elevation_min), std::abs(field.elevation_max)));
+  columns_ = static_cast<int>((field.azimuth_max - field.azimuth_min) / bin_rad_) + 1;
+  rows_ = static_cast<int>((field.elevation_max - field.elevation_min) / bin_rad_) + 1;
+  bins_.assign(static_cast<std::size_t>(columns_) * rows_, -1);
+
+  const Eigen::Matrix3f R_C_P = T_C_P.rotation().cast<float>();
+  const Vector3f t_C = T_C_P.translation().cast<float>();
+  const auto least = static_cast<float>(config.min_range_m), most = static_cast<float>(config.max_range_m);
+  const bool ahead_only = field.azimuth_max < 1.5F && field.azimuth_min > -1.5F;
+  for (const Vector3f& p_P : points_P) {
+    const Vector3f p_C = R_C_P * p_P + t_C;
+    if (ahead_only && !(p_C.z() > 0.0F)) continue;
+    const float range_m = p_C.norm();
+    if (range_m > least && range_m < most) insert(p_C, range_m);
+  }
+  hide();
+}
+
+Vector2f DepthImage::sphere_bin(const Vector3f& direction) const {
+  return (azimuth_elevation(direction) - Vector2f(azimuth_min_, elevation_min_)) / bin_rad_;
+}
+
+void DepthImage::insert(const Vector3f& p_C, float range_m) {
+  const Vector2f bin = sphere_bin(p_C / range_m);
+  if (!(bin.x() >= 0.0F && bin.y() >= 0.0F)) return;
+  const int column = static_cast<int>(bin.x()), row = static_cast<int>(bin.y());
+  if (column >= columns_ || row >= rows_) return;
+  std::int32_t& at = bins_[static_cast<std::size_t>(row) * columns_ + column];
+  if (at < 0) {
+    at = static_cast<std::int32_t>(points_.size());
+    points_.push_back(p_C);
+    ranges_.push_back(range_m);
+  } else if (range_m < ranges_[at]) {
+    points_[at] = p_C;
+    ranges_[at] = range_m;
+  }
+}
+
+/// Whether a point that is nearer by a jump lies on one side: below, above, right or left within the hiding angle.
+bool DepthImage::nearer_around(float range_m, int row, int column, int down, int right) const {
+  const int reach = static_cast<int>(std::lround(config_.hiding_deg / config_.bin_deg));
+  const float jump = std::max(static_cast<float>(config_.jump_m), static_cast<float>(config_.jump_share) * range_m);
+  for (int far = 1; far <= reach; ++far)
+    for (int side = -1; side <= 1; ++side) {
+      const int r = row + down * far + (down == 0 ? side : 0), c = column + right * far + (right == 0 ? side : 0);
+      if (r < 0 || c < 0 || r >= rows_ || c >= columns_) continue;
+      const std::int32_t other = bins_[static_cast<std::size_t>(r) * columns_ + c];
+      if (other >= 0 && ranges_[other] < range_m - jump) return true;
+    }
+  return false;
+}
+
+/// Takes out points between nearer ones: what the camera cannot see but the LiDAR could, from elsewhere or between the
+/// beams that hit the surface in front. On a slanting surface the nearer ones are all on one side.
+void DepthImage::hide() {
+  std::vector<std::size_t> hidden;
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column) {
+      const std::size_t bin = static_cast<std::size_t>(row) * columns_ + column;
+      if (bins_[bin] < 0) continue;
+      const auto nearer = [&](int down, int right) {
+        return nearer_around(ranges_[bins_[bin]], row, column, down, right);
+      };
+      if ((nearer(0, -1) && nearer(0, 1)) || (nearer(-1, 0) && nearer(1, 0))) hidden.push_back(bin);
+    }
+  for (const std::size_t bin : hidden) bins_[bin] = -1;
+}
+
+void DepthImage::collect(const Vector3f& ray, Neighbours& neighbours) const {
+  const auto reach = static_cast<float>(std::sin(config_.reach_deg * kRad));
+  const Vector2f centre = sphere_bin(ray);
+  const int column = static_cast<int>(std::floor(centre.x())), row = static_cast<int>(std::floor(centre.y()));
+  const auto visit = [&](int r, int c) {
+    if (r < 0 || c < 0 || r >= rows_ || c >= columns_) return;
+    const std::int32_t i = bins_[static_cast<std::size_t>(r) * columns_ + c];
+    if (i < 0) return;
+    const float angle2 = (points_[i] / ranges_[i] - ray).squaredNorm();
+    if (angle2 <= reach * reach) neighbours.add({points_[i], ranges_[i], angle2});
+  };
+  for (int ring = 0; !neighbours.full(); ++ring) {
+    if (ring == 0) visit(row, column);
+    for (int i = -ring; i < ring; ++i) {
+      visit(row - ring, column + i);
+      visit(row + i, column + ring);
+      visit(row + ring, column - i);
+      visit(row - i, column - ring);
+    }
+    // What the next rings hold is at least this far from the ray.
+    const float beyond = static_cast<float>(ring) * bin_rad_ * least_cos_elevation_;
+    const bool patch_done = neighbours.count() >= Neighbours::least &&
+                            beyond * neighbours.nearest_range_m() > static_cast<float>(config_.patch_m);
+    if (beyond > reach || patch_done) break;
+  }
+  neighbours.keep_within(std::pow(static_cast<float>(config_.patch_m) / neighbours.nearest_range_m(), 2.0F));
+}
+
+std::optional<FeatureDepth> DepthImage::at(const Vector2d& pixel_px) const {
+  const Vector3d ray = camera_.ray(pixel_px);
+  Neighbours neighbours;
+  collect(ray.cast<float>(), neighbours);
+  return depth_on_near_surface(ray, neighbours.by_range(), config_, 0.5 * (camera_.fx + camera_.fy));
+}
+
+std::vector<Vector3f> DepthImage::points_C() const {
+  std::vector<Vector3f> seen;
+  for (const std::int32_t i : bins_)
+    if (i >= 0) seen.push_back(points_[i]);
+  return seen;
+}
+
+std::vector<EdgePoint> points_along(const LineSegment& line, const DepthImage& depths, const Camera& camera,
+                                    double line_sigma_px, double step_px) {
+  std::vector<EdgePoint> points;
+  const int steps = std::max(1, static_cast<int>(line.length_px() / step_px));
+  const double sigma_rad = line_sigma_px / (0.5 * (camera.fx + camera.fy));
+  for (int i = 0; i <= steps; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(steps);
+    const Vector2d px = (line.start_px + share * (line.end_px - line.start_px)).cast<double>();
+    if (const auto depth = depths.at(px))
+      points.push_back({.p_C = depth->range_m * camera.ray(px),
+                        .sigma_ray_m = depth->sigma_m,
+                        .sigma_across_m = sigma_rad * depth->range_m});
+  }
+  return points;
+}
+
+}  // namespace pllit

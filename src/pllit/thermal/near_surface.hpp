@@ -1,0 +1,23 @@
+// The surface that an image feature lies on, from the LiDAR points around its ray.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "pllit/thermal/depth.hpp"
+
+namespace pllit {
+
+struct RaysNeighbour {
+  Vector3f p_C;
+  float range_m, angle2;  ///< squared angle from the ray (chord on the unit sphere)
+};
+
+/// Range of a unit ray to the plane of the nearest surface that owns it. `by_range`: the points around it by ascending
+/// range; they are reordered. Surfaces are told apart by jumps of range; the nearest one that holds the ray, or ends
+/// beside it where no farther one holds it, is it. Nothing where that stays open, or the plane does not pass
+/// DepthConfig's checks. `focal_px`: for the share of the feature's own error.
+std::optional<FeatureDepth> depth_on_near_surface(const Vector3d& ray, std::span<RaysNeighbour> by_range,
+                                                  const DepthConfig& config, double focal_px);
+
+}  // namespace pllit
