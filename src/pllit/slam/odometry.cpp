@@ -107,12 +107,14 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     if (!refined) return std::unexpected(refined.error());
     T_W_scan = refined->mean.T_W_I() * estimate_.mean.T_W_I().inverse() * T_W_scan;
     estimate_ = *refined;
-    facts.image.holds = facts.image.used && image_holds(facts.image.information, unobserved_, estimate_.mean.R_W_I);
+    if (facts.image.used && image_holds(facts.image.information, unobserved_, estimate_.mean.R_W_I))
+      last_held_ = packet.end;
   }
   if (packet.scan) {
     extend_map(dense, T_W_scan, facts);
     clock.charge(Stage::map);
   }
+  facts.image.holds = to_seconds(packet.end - last_held_) < config_.health.silent_degraded_s;
   facts.speed_mps = estimate_.mean.v_W.norm();
   facts.since_match_s = to_seconds(packet.end - last_match_);
   facts.longest_imu_gap_s = to_seconds(motion.longest_gap);

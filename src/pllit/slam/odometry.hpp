@@ -63,7 +63,7 @@ class Odometry {
   Estimate estimate_;
   std::unique_ptr<Vision> vision_;
   DegenerateDirections unobserved_;  ///< of the last scan
-  Time last_match_;
+  Time last_match_, last_held_;  ///< by a scan; by an image, where the scan does not hold the pose
   int unmatched_ = 0;  ///< scans in a row
 };
 
