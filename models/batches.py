@@ -47,8 +47,8 @@ class Batches(torch.utils.data.Dataset):
     def _crop(self, rng, image, points, segments, homography):
         size = self.size
         crop, shown = warps.warped(image, homography, (size, size))
-        here = warps.carried(homography, points) if len(points) else np.zeros((0, 2))
-        lines = warps.carried(homography, segments.reshape(-1, 2)).reshape(-1, 4) if len(segments) else np.zeros((0, 4))
+        here = warps.carried(homography, points)
+        lines = warps.carried(homography, segments.reshape(-1, 2)).reshape(-1, 4)
         field, weights = line_field(warps.clipped(lines, size, size), shown)
         sides = {"image": seen_by_a_camera(rng, crop), "labels": point_labels(here, shown), "field": field, "weights": weights}
         return sides, shown, here

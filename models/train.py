@@ -24,10 +24,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 STILLS = HERE.parent.parent / "shared/data/thermal/hit_uav"
 SEED = 20260
 STAGES = {
-    # Crops of `size` px, `pairs` pairs of them a step. Weights of the groups of images: drawn, HIT-UAV, simulated.
-    "shapes": dict(steps=600, rate=3e-3, pairs=6, size=192, shapes=1.0),
-    "joint": dict(steps=6000, rate=3e-3, pairs=6, size=192, shapes=0.4, hit_uav=0.35, simulated=0.25),
-    "lines": dict(steps=1500, rate=1.5e-3, pairs=4, size=256, shapes=0.3, hit_uav=0.3, simulated=0.4),
+    # `schedule`: steps over which the learning rate rises and falls. Crops of `size` px, `pairs` pairs of them a step. Weights of the groups of images: drawn, HIT-UAV, simulated.
+    "shapes": dict(steps=241, schedule=600, rate=3e-3, pairs=6, size=192, shapes=1.0),
+    "joint": dict(steps=1000, schedule=1000, rate=3e-3, pairs=4, size=160, shapes=0.35, hit_uav=0.4, simulated=0.25),
+    "lines": dict(steps=300, schedule=300, rate=1.5e-3, pairs=2, size=224, shapes=0.3, hit_uav=0.3, simulated=0.4),
 }
 
 
@@ -61,7 +61,7 @@ def optimiser_for(net, stage, lines_only):
     chosen = [parameter for parameter in net.parameters() if parameter.requires_grad]
     optimiser = torch.optim.AdamW(chosen, stage["rate"], weight_decay=1e-4)
     schedule = torch.optim.lr_scheduler.OneCycleLR(
-        optimiser, stage["rate"], total_steps=stage["steps"] + 1, pct_start=0.08, div_factor=10, final_div_factor=100)
+        optimiser, stage["rate"], total_steps=stage["schedule"] + 1, pct_start=0.08, div_factor=10, final_div_factor=100)
     return optimiser, schedule
 
 

@@ -4,7 +4,8 @@ import numpy as np
 
 
 def carried(homography, points):
-    return cv2.perspectiveTransform(np.asarray(points, np.float64).reshape(-1, 1, 2), homography).reshape(-1, 2)
+    points = np.asarray(points, np.float64).reshape(-1, 1, 2)
+    return cv2.perspectiveTransform(points, homography).reshape(-1, 2) if len(points) else np.zeros((0, 2))
 
 
 def _about(centre, scale, angle, shift, perspective):
