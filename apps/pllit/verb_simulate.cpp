@@ -1,6 +1,7 @@
 // pllit simulate: a simulated recording as an ordinary ROS 1 bag, with the truth beside it.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <format>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "frame_folder.hpp"
 #include "interrupt.hpp"
 #include "pllit/io/bag_writer.hpp"
 #include "pllit/io/csv.hpp"
@@ -24,12 +26,13 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scene, out;
+  std::string scene, out, frames;
   std::optional<std::uint64_t> seed;
   std::optional<double> duration_s;
   std::vector<std::string> settings;
   std::string cloud_time = "driver";
-  int jpeg = 0;
+  int jpeg = 0, every = 1;
+  std::vector<std::string> truth;
   bool list = false, json = false, overwrite = false;
 };
 
@@ -107,41 +110,75 @@ Expected<void> write_biases(const fs::path& file, const std::vector<StampedImuBi
   return csv->close();
 }
 
+/// What a simulation is written to: a bag, a folder of frames, or both.
+struct Outputs {
+  std::optional<BagWriter> bag;
+  std::optional<Recorder> recorder;
+  std::optional<FrameFolder> frames;
+
+  Expected<void> write(const SensorEvent& event, Simulation& simulation) {
+    if (frames)
+      if (auto done = frames->write(event, simulation); !done) return done;
+    return recorder ? recorder->write(event) : Expected<void>{};
+  }
+};
+
 /// Events until the end or a signal.
-Expected<void> record(Simulation& simulation, Recorder& recorder) {
+Expected<void> record(Simulation& simulation, Outputs& outputs) {
   const Interrupt interrupt;
   ProgressBar bar("messages", spdlog::should_log(spdlog::level::info));
   for (long count = 1; !interrupt.token().stop_requested(); ++count) {
     const auto event = simulation.next();
     if (!event) return std::unexpected(event.error());
     if (!*event) return {};
-    if (auto done = recorder.write(**event); !done) return done;
+    if (auto done = outputs.write(**event, simulation); !done) return done;
     bar.show(simulation.progress(), count);
   }
-  return failure("interrupted; the bag holds what was made so far and has no scene file");
+  return failure("interrupted; what was made so far is kept, without a scene file");
+}
+
+fs::path beside(const Options& options, const char* extension) {
+  return fs::path(options.out).replace_extension(extension);
+}
+
+Expected<void> open_outputs(const Options& options, const Simulation& simulation, Outputs& outputs) {
+  if (!options.frames.empty()) {
+    const auto wanted = [&](const char* what) { return std::ranges::contains(options.truth, what); };
+    const FrameChoice choice{.every = options.every,
+                             .depth = wanted("depth"),
+                             .temperature = wanted("temperature"),
+                             .edges = wanted("edges")};
+    auto frames = FrameFolder::create(options.frames, choice, options.overwrite, simulation);
+    if (!frames) return std::unexpected(frames.error());
+    outputs.frames.emplace(std::move(*frames));
+  }
+  if (options.out.empty()) return {};
+  auto bag = BagWriter::create(options.out);
+  if (!bag) return std::unexpected(bag.error());
+  outputs.bag.emplace(std::move(*bag));
+  outputs.recorder.emplace(*outputs.bag, topics_of(simulation.rig_name(), options.cloud_time), options.jpeg);
+  if (auto done = write_tum(beside(options, ".tum"), simulation.truth()); !done) return done;
+  return write_biases(beside(options, ".biases.csv"), simulation.true_biases());
 }
 
 Expected<ExitCode> simulate(const Options& options) {
-  const fs::path bag_path = options.out;
-  if (fs::exists(bag_path) && !options.overwrite)
+  if (!options.out.empty() && fs::exists(options.out) && !options.overwrite)
     return input_error(std::format("'{}' exists; give another name with --out, or --overwrite", options.out));
   const std::string address = address_of(options);
   auto simulation = open_simulation_with_files(address, Images::wanted);
   if (!simulation) return std::unexpected(simulation.error());
-  auto bag = BagWriter::create(bag_path);
-  if (!bag) return std::unexpected(bag.error());
-  const auto beside = [&](const char* extension) { return fs::path(bag_path).replace_extension(extension); };
-  if (auto done = write_tum(beside(".tum"), simulation->truth()); !done) return std::unexpected(done.error());
-  if (auto done = write_biases(beside(".biases.csv"), simulation->true_biases()); !done)
-    return std::unexpected(done.error());
-  Recorder recorder(*bag, topics_of(simulation->rig_name(), options.cloud_time), options.jpeg);
-  const auto recorded = record(*simulation, recorder);
-  if (auto closed = bag->close(); !closed) return std::unexpected(closed.error());
+  Outputs outputs;
+  if (auto opened = open_outputs(options, *simulation, outputs); !opened) return std::unexpected(opened.error());
+  const auto recorded = record(*simulation, outputs);
+  if (outputs.frames)
+    if (auto closed = outputs.frames->close(*simulation, address); !closed) return std::unexpected(closed.error());
+  if (outputs.bag)
+    if (auto closed = outputs.bag->close(); !closed) return std::unexpected(closed.error());
   if (!recorded) return std::unexpected(recorded.error());
-  if (auto done = replace_file(beside(".scene.json"), scene_json(simulation->scene_truth(), address).dump(2) + "\n");
-      !done)
+  const fs::path scene = options.out.empty() ? fs::path(options.frames) / "scene.json" : beside(options, ".scene.json");
+  if (auto done = replace_file(scene, scene_json(simulation->scene_truth(), address).dump(2) + "\n"); !done)
     return std::unexpected(done.error());
-  std::puts(bag_path.c_str());
+  std::puts((options.out.empty() ? options.frames : options.out).c_str());
   return ExitCode::done;
 }
 
@@ -175,8 +212,9 @@ ExitCode run(const Options& options) {
     options.json ? print_list_json() : print_list();
     return ExitCode::done;
   }
-  if (options.scene.empty() || options.out.empty())
-    return report({Error::Kind::input, "simulate needs a SCENE and --out F.bag; --list shows scenes, rows and keys"});
+  if (options.scene.empty() || (options.out.empty() && options.frames.empty()))
+    return report({Error::Kind::input,
+                   "simulate needs a SCENE and --out F.bag or --frames DIR; --list shows scenes, rows and keys"});
   const auto code = simulate(options);
   return code ? *code : report(code.error());
 }
@@ -204,12 +242,23 @@ Verb add_simulate(CLI::App& program) {
   verb->add_option("--jpeg", options->jpeg, "Compress 8-bit images with this quality")
       ->check(CLI::Range(1, 100).description(""))
       ->type_name("1..100");
-  verb->add_flag("--overwrite", options->overwrite, "Replace the bag if it exists");
+  verb->add_option("--frames", options->frames, "Folder to write images to as PNG; frames.json is its index")
+      ->type_name("DIR");
+  verb->add_option("--every", options->every, "With --frames: one image in N")
+      ->check(CLI::Range(1, 1000000).description(""))
+      ->type_name("N");
+  verb->add_option("--truth", options->truth, "With --frames: what each image truly shows")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"depth", "temperature", "edges"}).description(""))
+      ->type_name("depth,temperature,edges");
+  verb->add_flag("--overwrite", options->overwrite,
+                 "Replace the bag if it exists, write into a folder that is not empty");
   verb->add_flag("--list", options->list, "Show scenes, rows and keys");
   verb->add_flag("--json", options->json, "With --list: as JSON");
   verb->footer(
       "Examples:\n"
       "  pllit simulate plant --seed 3 --duration 60 --set finding=pipe --out plant.bag\n"
+      "  pllit simulate room --frames frames --every 10 --truth depth,edges --set rig=inspection --set scans=0\n"
       "  pllit simulate A1 --out a1.bag && pllit run a1.bag --config inspection --truth a1.tum");
   return {verb, [options] { return run(*options); }};
 }

@@ -29,6 +29,30 @@ TEST_F(Simulate, WritesABagThatDoctorAndRunAccept) {
   EXPECT_LT(nlohmann::json::parse(session.out)["ape"]["rmse"].get<double>(), 0.05);
 }
 
+TEST_F(Simulate, WritesFramesWithWhatTheyTrulyShow) {
+  const std::vector<std::string> command{
+      "simulate", "room",        "--duration", "5",       "--set",   "rig=inspection",
+      "--set",    "images=both", "--set",      "scans=0", "--set",   "image_rate=2",
+      "--frames", path("f"),     "--every",    "4",       "--truth", "depth,edges"};
+  const auto made = run(command);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto index = nlohmann::json::parse(read(path("f/frames.json")));
+  EXPECT_EQ(index["camera"]["width"], 640);
+  ASSERT_EQ(index["frames"].size(), 3U);
+  for (const auto& frame : index["frames"]) {
+    EXPECT_LT(frame["seen_s"].get<double>(), frame["stamp_s"].get<double>());
+    for (const char* key : {"grey", "counts", "depth"})
+      EXPECT_TRUE(read(path("f/" + frame[key].get<std::string>())).starts_with("\x89PNG")) << key;
+    const auto edges = nlohmann::json::parse(read(path("f/" + frame["edges"].get<std::string>())))["edges"];
+    EXPECT_GT(edges.size(), 20U);
+    EXPECT_GE(edges[0]["line_px"].size(), 2U);
+    EXPECT_FALSE(frame.contains("temperature"));
+  }
+  EXPECT_EQ(run(command).exit_code, 2) << "the folder holds something";
+  EXPECT_EQ(run({"simulate", "box_room", "--frames", path("g")}).exit_code, 2);
+  EXPECT_EQ(run({"simulate", "room", "--set", "lost_share=0.1", "--frames", path("g")}).exit_code, 2);
+}
+
 TEST_F(Simulate, SaysWhichScenesAndKeysThereAre) {
   const auto list = run({"simulate", "--list"});
   EXPECT_EQ(list.exit_code, 0);

@@ -150,6 +150,7 @@ std::vector<Key> world_keys() {
                              {"agc", C::Images::agc},
                              {"counts", C::Images::counts},
                              {"both", C::Images::both}}),
+      choice_key<bool>("scans", For::worlds, &C::scans, {{"1", true}, {"0", false}}),
       choice_key<bool>("light", For::worlds, &C::day, {{"day", true}, {"night", false}}),
       count_key("people", &C::people, 30),
       count_key("cars", &C::cars, 30),

@@ -15,6 +15,7 @@ namespace pllit {
 struct FaultInterval {
   double from_s = 0.0, to_s = 0.0;
   bool contains(double t_s) const { return t_s >= from_s && t_s < to_s; }
+  bool operator==(const FaultInterval&) const = default;
 };
 
 /// What goes wrong, and when. An IMU sample and an image are in an interval by their true time, a scan by the true end
@@ -32,6 +33,7 @@ struct SimFaults {
   double late_by_s = 0.08;
   double lost_share = 0.0;       ///< of all messages, at random
   double clock_drift_ppm = 0.0;  ///< of the LiDAR's and the camera's clock against the IMU's
+  bool operator==(const SimFaults&) const = default;
 };
 
 /// Boxes are exact, plain worlds for tests: rectangles, a spinning LiDAR, an IMU. The other scenes are worlds of
@@ -69,6 +71,7 @@ struct SimConfig {
   std::string imu;                 ///< model; else the rig's own
   double image_rate_hz = 10.0;
   Images images = Images::agc;
+  bool scans = true;  ///< the LiDAR is on
   bool day = true;
   int people = 0, cars = 0;
   Finding finding = Finding::none;

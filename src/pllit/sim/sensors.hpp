@@ -7,6 +7,7 @@
 #include "pllit/sensor/measurements.hpp"
 #include "pllit/sim/boxes/scenes.hpp"
 #include "pllit/sim/boxes/spinning_lidar.hpp"
+#include "pllit/sim/image_truth.hpp"
 #include "pllit/sim/motion/imu.hpp"
 #include "pllit/sim/rigs.hpp"
 #include "pllit/sim/sightings.hpp"
@@ -22,6 +23,13 @@ class SimSensor {
   virtual Time due() const = 0;
   /// Makes those; `received` is the time at which they were due.
   virtual std::vector<SensorEvent> take() = 0;
+};
+
+/// A camera's images, and what is true of the last one.
+class ImageSensor : public SimSensor {
+ public:
+  /// Before anything else has been made.
+  virtual ImageTruth truth(const TruthWanted& wanted) = 0;
 };
 
 /// A place with its rays, for all sensors of a rig.
@@ -46,9 +54,9 @@ struct ImageStream {
   bool ideal = false;               ///< images have no noise and no stamps that are late
 };
 /// A thermal camera also tells which findings it could see first when.
-std::unique_ptr<SimSensor> thermal_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream,
-                                          Surroundings& around, std::uint64_t seed, Sightings& sightings);
-std::unique_ptr<SimSensor> visible_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream,
-                                          Surroundings& around, std::uint64_t seed);
+std::unique_ptr<ImageSensor> thermal_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream,
+                                            Surroundings& around, std::uint64_t seed, Sightings& sightings);
+std::unique_ptr<ImageSensor> visible_sensor(const Motion& motion, const SimRig& rig, const ImageStream& stream,
+                                            Surroundings& around, std::uint64_t seed);
 
 }  // namespace pllit

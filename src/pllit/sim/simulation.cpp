@@ -36,6 +36,7 @@ struct Simulation::Parts {
   std::optional<Surroundings> around;
   std::optional<Sightings> sightings;
   std::vector<std::unique_ptr<SimSensor>> sensors;  // in the order in which messages of one time are received
+  ImageSensor* camera = nullptr;                    // one of them
   FaultyLine line;
   Time delivered_until;
 
@@ -98,9 +99,10 @@ std::vector<Vector3d> path_of(const Motion& motion, Time end) {
   return path_W;
 }
 
-PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motion& motion, Time end) {
-  PlaceConfig place{.kind = place_kind(config.scene), .seed = config.seed, .path_W = path_of(motion, end)};
-  place.duration_s = to_seconds(end - motion.start());
+/// Around the whole motion, whatever part of it config.duration_s lets happen.
+PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motion& motion) {
+  PlaceConfig place{.kind = place_kind(config.scene), .seed = config.seed, .path_W = path_of(motion, motion.end())};
+  place.duration_s = to_seconds(motion.end() - motion.start());
   place.height_m = rig.height_m;
   place.clearance_m = rig.on_car ? 2.5 : 0.6;
   place.light = config.day ? Light::day : Light::night;
@@ -149,22 +151,23 @@ void furnish_boxes(Parts& parts, BoxScene scene) {
 /// The place around the motion, and the rig's sensors in it.
 template <class Parts>
 Expected<void> furnish_world(Parts& parts) {
-  auto place = make_place(place_config(parts.config, parts.known, parts.motion, parts.end));
+  auto place = make_place(place_config(parts.config, parts.known, parts.motion));
   if (!place) return std::unexpected(place.error());
   parts.around.emplace(std::move(*place), kReach_m);
   parts.sightings.emplace(parts.around->place.get());
   const SimConfig& config = parts.config;
   parts.sensors.push_back(imu_sensor(parts.motion, parts.fresh_imu(), parts.built.accel_in_g));
-  parts.sensors.push_back(lidar_sensor(parts.motion, parts.built, *parts.around, config.seed));
+  if (config.scans) parts.sensors.push_back(lidar_sensor(parts.motion, parts.built, *parts.around, config.seed));
   if (config.images == SimConfig::Images::none) return {};
   const ImageStream stream{.rate_hz = config.image_rate_hz,
                            .agc = config.images != SimConfig::Images::counts,
                            .counts = config.images != SimConfig::Images::agc,
                            .ideal = config.ideal};
-  parts.sensors.push_back(
-      parts.built.thermal
-          ? thermal_sensor(parts.motion, parts.built, stream, *parts.around, config.seed, *parts.sightings)
-          : visible_sensor(parts.motion, parts.built, stream, *parts.around, config.seed));
+  auto camera = parts.built.thermal
+                    ? thermal_sensor(parts.motion, parts.built, stream, *parts.around, config.seed, *parts.sightings)
+                    : visible_sensor(parts.motion, parts.built, stream, *parts.around, config.seed);
+  parts.camera = camera.get();
+  parts.sensors.push_back(std::move(camera));
   return {};
 }
 
@@ -216,6 +219,7 @@ double Simulation::progress() const {
 
 const Rig& Simulation::rig() const { return parts_->rig; }
 const std::string& Simulation::rig_name() const { return parts_->known.name; }
+bool Simulation::is_thermal() const { return parts_->known.thermal.has_value(); }
 const Motion& Simulation::motion() const { return parts_->motion; }
 const PlanesWorld& Simulation::boxes() const { return *parts_->boxes; }
 
@@ -261,6 +265,11 @@ SceneTruth Simulation::scene_truth() const {
     truth.objects.back().first_seen_s = parts.sightings->first_s()[i];
   }
   return truth;
+}
+
+ImageTruth Simulation::image_truth(const TruthWanted& wanted) {
+  assert(parts_->camera && parts_->config.faults == SimFaults{});
+  return parts_->camera->truth(wanted);
 }
 
 Expected<Simulation> open_simulation(std::string_view source) {

@@ -13,6 +13,7 @@
 #include "pllit/sensor/rig.hpp"
 #include "pllit/sim/boxes/planes_world.hpp"
 #include "pllit/sim/config.hpp"
+#include "pllit/sim/image_truth.hpp"
 #include "pllit/sim/motion/imu.hpp"
 #include "pllit/sim/scene_truth.hpp"
 #include "pllit/state/trajectory.hpp"
@@ -42,6 +43,8 @@ class Simulation : public EventSource {
   /// better.
   const Rig& rig() const;
   const std::string& rig_name() const;
+  /// Of the camera, where there is one.
+  bool is_thermal() const;
   const Motion& motion() const;
   /// The boxes of a box scene.
   const PlanesWorld& boxes() const;
@@ -52,6 +55,8 @@ class Simulation : public EventSource {
   std::vector<StampedImuBias> true_biases() const;
   /// What is unknown to the estimator; first sightings as far as the simulation has run.
   SceneTruth scene_truth() const;
+  /// What the image that next() has just returned shows. Only for worlds with images, without faults.
+  ImageTruth image_truth(const TruthWanted& wanted);
 
  private:
   struct Parts;
