@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <stop_token>
 #include <utility>
 
 #include "interrupt.hpp"
@@ -108,10 +109,9 @@ Expected<void> write_biases(const fs::path& file, const std::vector<StampedImuBi
 }
 
 /// Events until the end or a signal.
-Expected<void> record(Simulation& simulation, Recorder& recorder) {
-  const Interrupt interrupt;
+Expected<void> record(Simulation& simulation, Recorder& recorder, const std::stop_token& stop) {
   ProgressBar bar("messages", spdlog::should_log(spdlog::level::info));
-  for (long count = 1; !interrupt.token().stop_requested(); ++count) {
+  for (long count = 1; !stop.stop_requested(); ++count) {
     const auto event = simulation.next();
     if (!event) return std::unexpected(event.error());
     if (!*event) return {};
@@ -126,6 +126,7 @@ Expected<ExitCode> simulate(const Options& options) {
   if (fs::exists(bag_path) && !options.overwrite)
     return input_error(std::format("'{}' exists; give another name with --out, or --overwrite", options.out));
   const std::string address = address_of(options);
+  const Interrupt interrupt;  // before the simulation starts threads
   auto simulation = open_simulation_with_files(address, Images::wanted);
   if (!simulation) return std::unexpected(simulation.error());
   auto bag = BagWriter::create(bag_path);
@@ -135,7 +136,7 @@ Expected<ExitCode> simulate(const Options& options) {
   if (auto done = write_biases(beside(".biases.csv"), simulation->true_biases()); !done)
     return std::unexpected(done.error());
   Recorder recorder(*bag, topics_of(simulation->rig_name(), options.cloud_time), options.jpeg);
-  const auto recorded = record(*simulation, recorder);
+  const auto recorded = record(*simulation, recorder, interrupt.token());
   if (auto closed = bag->close(); !closed) return std::unexpected(closed.error());
   if (!recorded) return std::unexpected(recorded.error());
   if (auto done = replace_file(beside(".scene.json"), scene_json(simulation->scene_truth(), address).dump(2) + "\n");
