@@ -24,12 +24,9 @@ if(arch)
 endif()
 
 if(PLLIT_SANITIZE)
-  set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  if(PLLIT_FUZZ)
-    list(APPEND sanitizers -fsanitize=fuzzer-no-link)
-  endif()
-  # With the assertions of Eigen and of the standard library. -Og -g1 compiles in three fifths of the time of -O1 -g.
-  target_compile_options(pllit_flags INTERFACE ${sanitizers} -Og -g1 -UNDEBUG)
+  set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
+  # With assertions, also those of Eigen and of the standard library.
+  target_compile_options(pllit_flags INTERFACE ${sanitizers} -fno-omit-frame-pointer -O1 -g1)
   target_compile_definitions(pllit_flags INTERFACE _GLIBCXX_ASSERTIONS)
   target_link_options(pllit_flags INTERFACE ${sanitizers})
 endif()

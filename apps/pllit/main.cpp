@@ -20,8 +20,8 @@ constexpr const char* kFooter = R"(Examples:
   pllit eval truth.tum results/latest/trajectory.tum  how far the estimate is from the truth
   pllit export results/latest --format las            the map for a surveyor
 
-`pllit VERB --help` explains a verb. Exit codes: 0 done, 1 failed, 2 wrong usage, configuration or input,
-3 finished but degraded or lost, 4 anomalies at or above the alarm level.)";
+`pllit VERB --help` explains a verb. Exit codes: 0 done, 1 failed or interrupted, 2 wrong usage,
+configuration or input, 3 finished but degraded or lost, 4 anomalies at or above the alarm level.)";
 
 int code(ExitCode exit_code) { return static_cast<int>(exit_code); }
 

@@ -37,7 +37,8 @@ Json summary_json(const RunSummary& summary) {
                     {"initialising", summary.count(HealthState::initialising)},
                     {"good", summary.count(HealthState::good)},
                     {"degraded", summary.count(HealthState::degraded)},
-                    {"lost", summary.count(HealthState::lost)}};
+                    {"lost", summary.count(HealthState::lost)},
+                    {"doubts", summary.doubts()}};
   json["start"] = summary.start ? summary.start->report : "not started";
   json["notes"] = summary.notes;
   return json;
@@ -55,6 +56,9 @@ std::string summary_text(const Json& json) {
       json["frame_ms"]["p99"].get<double>(), json["peak_memory_mb"].get<double>(), health["state"].get<std::string>(),
       health["good"].get<int>(), health["degraded"].get<int>(), health["lost"].get<int>(),
       json["start"].get<std::string>());
+  if (const auto doubts = health["doubts"].get<std::string>(); !doubts.empty())
+    text += std::format("doubts      {} ({})\n", doubts,
+                        json["status"] == "done" ? "therefore exit code 3" : json["status"].get<std::string>());
   if (json.contains("ape"))
     text += std::format("APE         rmse {:.4f} m, median {:.4f} m, max {:.4f} m ({} poses)\n",
                         json["ape"]["rmse"].get<double>(), json["ape"]["median"].get<double>(),

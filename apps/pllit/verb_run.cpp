@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <stop_token>
 #include <utility>
 
 #include "interrupt.hpp"
@@ -70,12 +71,14 @@ Expected<Trajectory> truth_of(const Options& options, const OpenedSource& source
 
 class SessionRun {
  public:
-  SessionRun(const Options& options, const Config& config, OpenedSource source, Trajectory truth, SessionWriter session)
+  SessionRun(const Options& options, const Config& config, OpenedSource source, Trajectory truth, SessionWriter session,
+             std::stop_token stop)
       : options_(options),
         config_(config),
         source_(std::move(source)),
         truth_(std::move(truth)),
         session_(std::move(session)),
+        stop_(std::move(stop)),
         map_(config.map_file_voxel_m, config.map.radius_m) {}
 
   Expected<ExitCode> operator()() {
@@ -92,11 +95,10 @@ class SessionRun {
 
  private:
   Expected<void> run(RunSummary& summary) {
-    const Interrupt interrupt;
     ProgressBar bar("frames", spdlog::should_log(spdlog::level::info));
     const RunHooks hooks{.sink = session_sink(session_, map_),
                          .progress = [&](double share) { bar.show(share, summary.frames); },
-                         .stop = interrupt.token()};
+                         .stop = stop_};
     return run_odometry(*source_.events, source_.rig, config_, hooks, summary);
   }
 
@@ -134,12 +136,14 @@ class SessionRun {
   OpenedSource source_;
   Trajectory truth_;
   SessionWriter session_;
+  std::stop_token stop_;
   MapRecorder map_;
 };
 
 Expected<ExitCode> run_session(const Options& options) {
   const auto config = read_config(options.config, options.settings);
   if (!config) return std::unexpected(config.error());
+  const Interrupt interrupt;  // before a source starts threads
   auto source = open_source(options.sources, *config, config->vision.enabled ? Images::wanted : Images::skipped);
   if (!source) return std::unexpected(source.error());
   auto truth = truth_of(options, *source);
@@ -152,7 +156,8 @@ Expected<ExitCode> run_session(const Options& options) {
   if (!session) return std::unexpected(session.error());
   if (options.out.empty())
     if (const auto linked = link_latest(folder); !linked) spdlog::warn("{}", linked.error().message);
-  return SessionRun(options, *config, std::move(*source), std::move(*truth), std::move(*session))();
+  return SessionRun(options, *config, std::move(*source), std::move(*truth), std::move(*session),
+                    interrupt.token())();
 }
 
 ExitCode run(const Options& options) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <stop_token>
 #include <utility>
 
 #include "frame_folder.hpp"
@@ -124,10 +125,9 @@ struct Outputs {
 };
 
 /// Events until the end or a signal.
-Expected<void> record(Simulation& simulation, Outputs& outputs) {
-  const Interrupt interrupt;
+Expected<void> record(Simulation& simulation, Outputs& outputs, const std::stop_token& stop) {
   ProgressBar bar("messages", spdlog::should_log(spdlog::level::info));
-  for (long count = 1; !interrupt.token().stop_requested(); ++count) {
+  for (long count = 1; !stop.stop_requested(); ++count) {
     const auto event = simulation.next();
     if (!event) return std::unexpected(event.error());
     if (!*event) return {};
@@ -165,11 +165,12 @@ Expected<ExitCode> simulate(const Options& options) {
   if (!options.out.empty() && fs::exists(options.out) && !options.overwrite)
     return input_error(std::format("'{}' exists; give another name with --out, or --overwrite", options.out));
   const std::string address = address_of(options);
+  const Interrupt interrupt;  // before the simulation starts threads
   auto simulation = open_simulation_with_files(address, Images::wanted);
   if (!simulation) return std::unexpected(simulation.error());
   Outputs outputs;
   if (auto opened = open_outputs(options, *simulation, outputs); !opened) return std::unexpected(opened.error());
-  const auto recorded = record(*simulation, outputs);
+  const auto recorded = record(*simulation, outputs, interrupt.token());
   if (outputs.frames)
     if (auto closed = outputs.frames->close(*simulation, address); !closed) return std::unexpected(closed.error());
   if (outputs.bag)

@@ -1,3 +1,4 @@
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -51,6 +52,20 @@ TEST_F(Simulate, WritesFramesWithWhatTheyTrulyShow) {
   EXPECT_EQ(run(command).exit_code, 2) << "the folder holds something";
   EXPECT_EQ(run({"simulate", "box_room", "--frames", path("g")}).exit_code, 2);
   EXPECT_EQ(run({"simulate", "room", "--set", "lost_share=0.1", "--frames", path("g")}).exit_code, 2);
+}
+
+TEST_F(Simulate, LeavesAReadableBagAfterCtrlC) {
+  const std::string bag = path("cut.bag");
+  const pid_t process = start({"simulate", "room", "--set", "images=none", "--out", bag});
+  const bool running = waited_for(process, bag, 2'000'000);
+  kill(process, SIGINT);
+  const auto [exit_code, out, err] = finished(process);
+  ASSERT_TRUE(running) << err;
+  EXPECT_EQ(exit_code, 1);
+  EXPECT_THAT(err, HasSubstr("interrupted; the bag holds what was made so far"));
+  const auto doctor = run({"doctor", bag, "--config", "hilti2022"});
+  EXPECT_NE(doctor.exit_code, 1) << doctor.err;
+  EXPECT_THAT(doctor.out, testing::Not(HasSubstr("has no complete index")));
 }
 
 TEST_F(Simulate, SaysWhichScenesAndKeysThereAre) {

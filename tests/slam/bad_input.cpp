@@ -31,6 +31,18 @@ TEST(SilentLidar, IsBridgedByTheImuForTwoSecondsWithoutBeingLost) {
   EXPECT_LT(final_error_m(run), 0.02);
 }
 
+TEST(SensorsThatFallSilentForGood, AreNeverCalledGood) {
+  const auto blind = test::run_simulation(with_fault("lidar_gap=8:99"));
+  EXPECT_TRUE(blind.result);
+  EXPECT_EQ(count_between(blind, 8.5, 99.0, HealthState::good), 0);
+  EXPECT_EQ(blind.summary.final_state, HealthState::lost);
+  const auto numb = test::run_simulation(with_fault("imu_gap=8:99"));
+  EXPECT_TRUE(numb.result);
+  EXPECT_EQ(count_between(numb, 8.5, 99.0, HealthState::good), 0);
+  EXPECT_NE(numb.summary.final_state, HealthState::good);
+  for (const FrameEstimate& frame : numb.frames) EXPECT_TRUE(frame.posterior.covariance.allFinite());
+}
+
 TEST(MissingImuData, IsADegradationFromWhichItRecovers) {
   const auto run = test::run_simulation(with_fault("imu_gap=8:9"));
   ASSERT_TRUE(run.result);

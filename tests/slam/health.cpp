@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "pllit/slam/run.hpp"
+
 namespace pllit {
 namespace {
 
@@ -42,7 +44,12 @@ TEST(Health, SaysWhyAFrameIsDegraded) {
                 f.matched = false;
                 f.inliers = 10;
               }),
-              testing::HasSubstr("not matched"));
+              testing::HasSubstr("scan not matched: 10 points fit the map; at least 60 must"));
+  EXPECT_THAT(reason([](FrameFacts& f) {
+                f.matched = false;
+                f.inliers = 200;
+              }),
+              testing::HasSubstr("scan not matched: 200 of 1200 points fit the map; at least 25 % must"));
   EXPECT_THAT(reason([](FrameFacts& f) {
                 f.has_scan = f.matched = false;
                 f.since_match_s = 1.5;
@@ -68,6 +75,22 @@ TEST(Health, DoesNotAcceptAMatchOfAFewPointsOrASmallShare) {
   EXPECT_FALSE(match_accepted(sums, {}));
   sums.candidates = sums.inliers = 20;
   EXPECT_FALSE(match_accepted(sums, {}));
+}
+
+TEST(RunVerdict, IsEmptyOnlyWhereTheWholeRunCanBeTrusted) {
+  RunSummary summary;
+  summary.frames = 100;
+  summary.health = {0, 90, 10, 0};
+  summary.final_state = HealthState::good;
+  EXPECT_EQ(summary.doubts(), "");
+  summary.final_state = HealthState::degraded;
+  EXPECT_EQ(summary.doubts(), "degraded at the end");
+  summary.health = {0, 86, 14, 0};
+  summary.final_state = HealthState::good;
+  EXPECT_EQ(summary.doubts(), "degraded in 14 of 100 frames, more than a tenth");
+  summary.health = {0, 83, 14, 3};
+  summary.final_state = HealthState::lost;
+  EXPECT_EQ(summary.doubts(), "lost in 3 of 100 frames; degraded in 14 of 100 frames, more than a tenth; lost at the end");
 }
 
 }  // namespace

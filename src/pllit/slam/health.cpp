@@ -3,6 +3,17 @@
 #include <format>
 
 namespace pllit {
+namespace {
+
+/// The minimum that a match missed.
+std::string missed_minimum(const FrameFacts& facts, const HealthConfig& config) {
+  if (facts.inliers < config.min_inliers)
+    return std::format("{} points fit the map; at least {} must", facts.inliers, config.min_inliers);
+  return std::format("{} of {} points fit the map; at least {:.0f} % must", facts.inliers, facts.candidates,
+                     100.0 * config.min_inlier_share);
+}
+
+}  // namespace
 
 std::string_view name_of(HealthState state) {
   switch (state) {
@@ -48,8 +59,7 @@ Health assess(const FrameFacts& facts, const HealthConfig& config) {
                      facts.image.correction));
   if (facts.map_empty) return health;
   if (facts.has_scan && !facts.matched)
-    mark(HealthState::degraded,
-         std::format("scan not matched: {} of {} points fit the map", facts.inliers, facts.candidates));
+    mark(HealthState::degraded, "scan not matched: " + missed_minimum(facts, config));
   if (!facts.matched) return health;
   if (facts.localizability.degenerate > 0 && !facts.image.holds)
     mark(HealthState::degraded, "LiDAR does not observe " + describe_degeneracy(facts.localizability));

@@ -117,8 +117,14 @@ class Run {
 
 }  // namespace
 
-bool RunSummary::was_degraded() const {
-  return count(HealthState::lost) > 0 || final_state != HealthState::good || 10 * count(HealthState::degraded) > frames;
+std::string RunSummary::doubts() const {
+  std::string text;
+  const auto add = [&text](const std::string& doubt) { text += (text.empty() ? "" : "; ") + doubt; };
+  const int lost = count(HealthState::lost), degraded = count(HealthState::degraded);
+  if (lost > 0) add(std::format("lost in {} of {} frames", lost, frames));
+  if (10 * degraded > frames) add(std::format("degraded in {} of {} frames, more than a tenth", degraded, frames));
+  if (final_state != HealthState::good) add(std::format("{} at the end", name_of(final_state)));
+  return text;
 }
 
 Expected<void> run_odometry(EventSource& source, const Rig& rig, const Config& config, const RunHooks& hooks,

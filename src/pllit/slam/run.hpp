@@ -31,7 +31,9 @@ struct RunSummary {
   double real_time_factor() const { return wall_s > 0.0 ? duration_s / wall_s : 0.0; }
   int count(HealthState state) const { return health[static_cast<std::size_t>(state)]; }
   /// Lost at any time, not good at the end, or degraded for more than a tenth of the frames.
-  bool was_degraded() const;
+  bool was_degraded() const { return !doubts().empty(); }
+  /// Which of these it was, in words; empty where none.
+  std::string doubts() const;
 };
 
 struct RunHooks {
