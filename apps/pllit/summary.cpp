@@ -55,6 +55,9 @@ std::string summary_text(const Json& json) {
       json["frame_ms"]["p99"].get<double>(), json["peak_memory_mb"].get<double>(), health["state"].get<std::string>(),
       health["good"].get<int>(), health["degraded"].get<int>(), health["lost"].get<int>(),
       json["start"].get<std::string>());
+  if (json.contains("loops"))
+    text += std::format("loops       {} closed, {} candidates refused\n", json["loops"]["accepted"].get<int>(),
+                        json["loops"]["rejected"].get<int>());
   if (json.contains("ape"))
     text += std::format("APE         rmse {:.4f} m, median {:.4f} m, max {:.4f} m ({} poses)\n",
                         json["ape"]["rmse"].get<double>(), json["ape"]["median"].get<double>(),

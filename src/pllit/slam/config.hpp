@@ -9,6 +9,7 @@
 #include "pllit/lidar/downsample.hpp"
 #include "pllit/lidar/plane_map.hpp"
 #include "pllit/lidar/plane_residuals.hpp"
+#include "pllit/loop/loop_config.hpp"
 #include "pllit/sensor/rig.hpp"
 #include "pllit/slam/drift.hpp"
 #include "pllit/slam/health.hpp"
@@ -75,6 +76,7 @@ struct Config {
   GapModel gaps;
   DriftConfig drift;
   HealthConfig health;
+  LoopConfig loop;
 };
 
 /// Equal in every key.

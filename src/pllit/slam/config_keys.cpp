@@ -4,9 +4,7 @@
 #include <array>
 
 #include "pllit/base/words.hpp"
-
-// A key's name is the token of the member that holds it, so that the two cannot diverge.
-#define PLLIT_KEY(member) #member, config.member
+#include "pllit/slam/config_section.hpp"
 
 namespace pllit {
 namespace {
@@ -16,42 +14,7 @@ constexpr std::array<std::string_view, 5> kPointTimeUnits{"auto", "s", "ms", "us
 constexpr std::array<std::string_view, 3> kAccelUnits{"auto", "m_s2", "g"};
 constexpr std::array<std::string_view, 3> kStartModes{"auto", "static", "moving"};
 constexpr std::array<std::string_view, 2> kDistortions{"radtan", "equidistant"};
-
-template <class T>
-Key::Value value_at(T& member) {
-  return &member;
-}
-template <class T, std::size_t N>
-Key::Value value_at(std::array<T, N>& member) {
-  return std::span<T>(member);
-}
-
-/// Adds keys to one section of the list.
-class Section {
- public:
-  explicit Section(KeyList& list, std::string prefix = "") : list_(list), prefix_(std::move(prefix)) {}
-
-  Section section(std::string_view name, std::string_view doc) {
-    list_.sections.push_back({prefix_ + std::string(name), std::string(doc)});
-    return Section(list_, list_.sections.back().path + ".");
-  }
-
-  template <class T>
-  void add(std::string_view name, T& member, std::string_view doc, std::string_view unit = "", Limits limits = {}) {
-    list_.keys.push_back({prefix_ + std::string(name), value_at(member), std::string(doc), std::string(unit), limits});
-  }
-
-  template <class E>
-  void choose(std::string_view name, E& member, std::span<const std::string_view> words, std::string_view doc) {
-    const Choice choice{words, [&member] { return static_cast<std::size_t>(member); },
-                        [&member](std::size_t index) { member = static_cast<E>(index); }};
-    list_.keys.push_back({prefix_ + std::string(name), choice, std::string(doc), "", {}});
-  }
-
- private:
-  KeyList& list_;
-  std::string prefix_;
-};
+constexpr std::array<std::string_view, 2> kSwitch{"false", "true"};
 
 void list(Section section, InputConfig& config) {
   section.add(PLLIT_KEY(imu_topic), "Topic of the IMU (sensor_msgs/Imu); empty: found by its type.");
@@ -224,6 +187,8 @@ KeyList keys_of(Config& config) {
   list(map, config.map);
   map.add("file_voxel_m", config.map_file_voxel_m, "The written map holds one point in each voxel of this size.", "m",
           {0.001, 10.0});
+  root.section("loop", "Loop closing: earlier places that are met again straighten the trajectory and the map.")
+      .choose("enabled", config.loop.enabled, kSwitch, "Close loops; odometry.tum stays as it is without.");
   root.add(PLLIT_KEY(threads), "Threads for the heavy loops; 0: one for every core. Results do not depend on it.", "",
            {0.0, 256.0});
   Section advanced = root.section("advanced", "For experts: the defaults serve nearly everyone.");
@@ -237,6 +202,7 @@ KeyList keys_of(Config& config) {
   list(advanced.section("gaps", "What to assume where IMU samples are missing."), config.gaps);
   list(advanced.section("drift", "How the doubt about the map grows."), config.drift);
   list(advanced.section("health", "When a frame is called degraded or lost."), config.health);
+  list_loop(advanced.section("loop", "How loops are found and checked."), config.loop);
   return keys;
 }
 
@@ -263,5 +229,3 @@ std::string KeyList::nearest(std::string_view path) const {
 }
 
 }  // namespace pllit
-
-#undef PLLIT_KEY

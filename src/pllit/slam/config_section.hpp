@@ -1,0 +1,54 @@
+// How lists of keys are written down; included by the .cpp files that do.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "pllit/slam/config_keys.hpp"
+
+// A key's name is the token of the member that holds it, so that the two cannot diverge.
+#define PLLIT_KEY(member) #member, config.member
+
+namespace pllit {
+
+template <class T>
+Key::Value value_at(T& member) {
+  return &member;
+}
+template <class T, std::size_t N>
+Key::Value value_at(std::array<T, N>& member) {
+  return std::span<T>(member);
+}
+
+/// Adds keys to one section of the list.
+class Section {
+ public:
+  explicit Section(KeyList& list, std::string prefix = "") : list_(list), prefix_(std::move(prefix)) {}
+
+  Section section(std::string_view name, std::string_view doc) {
+    list_.sections.push_back({prefix_ + std::string(name), std::string(doc)});
+    return Section(list_, list_.sections.back().path + ".");
+  }
+
+  template <class T>
+  void add(std::string_view name, T& member, std::string_view doc, std::string_view unit = "", Limits limits = {}) {
+    list_.keys.push_back({prefix_ + std::string(name), value_at(member), std::string(doc), std::string(unit), limits});
+  }
+
+  template <class E>
+  void choose(std::string_view name, E& member, std::span<const std::string_view> words, std::string_view doc) {
+    const Choice choice{words, [&member] { return static_cast<std::size_t>(member); },
+                        [&member](std::size_t index) { member = static_cast<E>(index); }};
+    list_.keys.push_back({prefix_ + std::string(name), choice, std::string(doc), "", {}});
+  }
+
+ private:
+  KeyList& list_;
+  std::string prefix_;
+};
+
+/// The keys of advanced.loop.
+void list_loop(Section section, LoopConfig& config);
+
+}  // namespace pllit
