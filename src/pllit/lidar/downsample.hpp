@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pllit/lidar/deskew.hpp"
-#include "pllit/lidar/voxel_table.hpp"
+#include "pllit/geometry/voxel_table.hpp"
 
 namespace pllit {
 

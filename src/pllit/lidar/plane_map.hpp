@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pllit/lidar/deskew.hpp"
-#include "pllit/lidar/voxel_table.hpp"
+#include "pllit/geometry/voxel_table.hpp"
 
 namespace pllit {
 

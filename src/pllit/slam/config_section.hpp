@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -55,5 +56,7 @@ class Section {
 
 void list_thermal(Section section, VisionConfig& config);
 void list_vision(Section section, VisionConfig& config);
+/// The keys of advanced.loop.
+void list_loop(Section section, LoopConfig& config);
 
 }  // namespace pllit

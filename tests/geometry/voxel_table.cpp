@@ -1,4 +1,4 @@
-#include "pllit/lidar/voxel_table.hpp"
+#include "pllit/geometry/voxel_table.hpp"
 
 #include <gtest/gtest.h>
 
