@@ -64,7 +64,7 @@ Expected<KeyframeRun> run_odometry_of(const Options& options, const Config& conf
   return run;
 }
 
-void turn_away(std::vector<Keyframe>& keyframes, double deg_per_min) {
+void turn_away(std::vector<LoopKeyframe>& keyframes, double deg_per_min) {
   const double rate_rps = deg_per_min * M_PI / 180.0 / 60.0;
   SE3 before = keyframes.empty() ? SE3::Identity() : keyframes.front().T_O_I;
   for (std::size_t k = 1; k < keyframes.size(); ++k) {
@@ -163,7 +163,7 @@ nlohmann::ordered_json close_loops(const Options& options, const LoopConfig& con
   const auto ms = [](auto from) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - from).count();
   };
-  for (const Keyframe& keyframe : run.keyframes) {
+  for (const LoopKeyframe& keyframe : run.keyframes) {
     const auto from = std::chrono::steady_clock::now();
     closer.add(keyframe);
     keyframe_ms.add(ms(from));
@@ -172,7 +172,7 @@ nlohmann::ordered_json close_loops(const Options& options, const LoopConfig& con
   closer.finish();
   const double finish_ms = ms(from);
   std::vector<SE3> odometry_poses;
-  for (const Keyframe& keyframe : run.keyframes) odometry_poses.push_back(keyframe.T_O_I);
+  for (const LoopKeyframe& keyframe : run.keyframes) odometry_poses.push_back(keyframe.T_O_I);
   const Trajectory odometry = trajectory_of(run, odometry_poses), closed = trajectory_of(run, closer.poses_M());
   int wrong = 0, accepted = 0;
   double worst_m = 0.0;

@@ -11,7 +11,7 @@ namespace pllit {
 namespace {
 
 /// The keyframes' poses turned away about the vertical, steadily.
-std::vector<Keyframe> turned_away(std::vector<Keyframe> keyframes, double deg_per_m) {
+std::vector<LoopKeyframe> turned_away(std::vector<LoopKeyframe> keyframes, double deg_per_m) {
   SE3 before = keyframes.front().T_O_I;
   for (std::size_t k = 1; k < keyframes.size(); ++k) {
     const SE3 step = before.inverse() * keyframes[k].T_O_I;
@@ -24,32 +24,32 @@ std::vector<Keyframe> turned_away(std::vector<Keyframe> keyframes, double deg_pe
 }
 
 /// Root mean square of the positions' errors; all poses start alike.
-double error_m(const std::vector<Keyframe>& truth, const std::vector<SE3>& poses) {
+double error_m(const std::vector<LoopKeyframe>& truth, const std::vector<SE3>& poses) {
   double sum = 0.0;
   for (std::size_t k = 0; k < poses.size(); ++k)
     sum += (poses[k].translation() - truth[k].T_O_I.translation()).squaredNorm();
   return std::sqrt(sum / static_cast<double>(poses.size()));
 }
 
-std::vector<SE3> odometry_of(const std::vector<Keyframe>& keyframes) {
+std::vector<SE3> odometry_of(const std::vector<LoopKeyframe>& keyframes) {
   std::vector<SE3> poses;
-  for (const Keyframe& keyframe : keyframes) poses.push_back(keyframe.T_O_I);
+  for (const LoopKeyframe& keyframe : keyframes) poses.push_back(keyframe.T_O_I);
   return poses;
 }
 
-LoopCloser closed(const std::vector<Keyframe>& keyframes, const LoopConfig& config = {}) {
+LoopCloser closed(const std::vector<LoopKeyframe>& keyframes, const LoopConfig& config = {}) {
   LoopCloser closer(config);
-  for (const Keyframe& keyframe : keyframes) closer.add(keyframe);
+  for (const LoopKeyframe& keyframe : keyframes) closer.add(keyframe);
   closer.finish();
   return closer;
 }
 
-const std::vector<Keyframe>& drive() {
-  static const std::vector<Keyframe> keyframes = test::up_and_back(SimConfig::RigName::hilti2022, 102);
+const std::vector<LoopKeyframe>& drive() {
+  static const std::vector<LoopKeyframe> keyframes = test::up_and_back(SimConfig::RigName::hilti2022, 102);
   return keyframes;
 }
 
-double worst_accepted_m(const std::vector<Keyframe>& truth, const LoopCloser& closer) {
+double worst_accepted_m(const std::vector<LoopKeyframe>& truth, const LoopCloser& closer) {
   double worst = 0.0;
   for (const LoopRecord& record : closer.records()) {
     if (!record.accepted) continue;
@@ -112,7 +112,7 @@ LoopRecord loop_between(int earlier, int later, const Vector3d& error_m) {
 TEST(Consistency, LoopsThatAreRightAgreeAndOneThatIsNotStandsAlone) {
   const auto drifting = turned_away(drive(), 0.02);
   OdometryChain odometry;
-  for (const Keyframe& keyframe : drifting) odometry.append(keyframe.T_O_I, keyframe.step_covariance * 25.0);
+  for (const LoopKeyframe& keyframe : drifting) odometry.append(keyframe.T_O_I, keyframe.step_covariance * 25.0);
   const std::vector<LoopRecord> loops{
       loop_between(5, 75, Vector3d::Zero()), loop_between(7, 77, Vector3d(0.03, 0.0, 0.0)),
       loop_between(9, 79, Vector3d(1.5, 0.0, 0.0)), loop_between(11, 81, Vector3d::Zero())};

@@ -97,8 +97,8 @@ struct Drive {
 
 class Street : public testing::TestWithParam<Drive> {
  protected:
-  static const std::vector<Keyframe>& drive() {
-    static std::map<SimConfig::RigName, std::vector<Keyframe>> driven;
+  static const std::vector<LoopKeyframe>& drive() {
+    static std::map<SimConfig::RigName, std::vector<LoopKeyframe>> driven;
     auto& keyframes = driven[GetParam().rig];
     if (keyframes.empty()) keyframes = test::up_and_back(GetParam().rig, 101);
     return keyframes;
@@ -106,7 +106,7 @@ class Street : public testing::TestWithParam<Drive> {
   /// The submap of a window around a place of the way, and the keyframe in its middle.
   static std::pair<Submap, std::size_t> around(double way_m) {
     const auto index = [](double way) {
-      const auto at = std::ranges::lower_bound(drive(), way, {}, &Keyframe::way_m);
+      const auto at = std::ranges::lower_bound(drive(), way, {}, &LoopKeyframe::way_m);
       return std::min(drive().size() - 1, static_cast<std::size_t>(at - drive().begin()));
     };
     const std::size_t middle = index(way_m);
@@ -117,7 +117,7 @@ class Street : public testing::TestWithParam<Drive> {
   static double again(double x_m) { return 120.0 + 2.0 * turn_m + x_m; }
   static double opposite(double x_m) { return 120.0 + turn_m - x_m; }
   static SE3 truth(std::size_t a, std::size_t b) {
-    const auto level = [](const Keyframe& k) { return pose_from(levelled(k.up_I), Vector3d::Zero()); };
+    const auto level = [](const LoopKeyframe& k) { return pose_from(levelled(k.up_I), Vector3d::Zero()); };
     return level(drive()[a]) * drive()[a].T_O_I.inverse() * drive()[b].T_O_I * level(drive()[b]).inverse();
   }
   static Vector6 error(const SE3& truth, const SE3& found) {

@@ -34,8 +34,8 @@ Joint random_joint(Random& random) {
 
 /// Measures where the state is seen from clone 1, in W: linear in the errors but for the turn of the state's own frame.
 LinearizeJoint relative_position(const Joint& joint, const Vector3d& measured, double sigma) {
-  const Vector3d from = joint.clones.T_W_I[1].translation();
-  return [=](const NavState& x) {
+  const Vector3d from = joint.clones.poses[1].translation();
+  return [=](const NavState& x, std::span<const SE3>) {
     JointEquations sums(2);
     MatrixXd J = MatrixXd::Zero(3, sums.H.cols());
     J.block<3, 3>(0, ix::p).setIdentity();
@@ -69,14 +69,14 @@ TEST(Clones, RemovingOneLeavesTheOthersAsTheyWere) {
   ASSERT_EQ(joint.clones.size(), 1U);
   EXPECT_EQ(joint.clones.with_state, before.with_state.rightCols(6));
   EXPECT_EQ(joint.clones.covariance, before.covariance.bottomRightCorner(6, 6));
-  EXPECT_EQ(joint.clones.T_W_I[0], before.T_W_I[1]);
+  EXPECT_EQ(joint.clones.poses[0], before.poses[1]);
 }
 
 TEST(JointUpdate, EqualsTheSchmidtGainOnALinearSensor) {
   Random random(3);
   const Joint joint = random_joint(random);
   const Vector3d offset(0.02, -0.03, 0.01);
-  const Vector3d predicted = joint.estimate.mean.p_W - joint.clones.T_W_I[1].translation();
+  const Vector3d predicted = joint.estimate.mean.p_W - joint.clones.poses[1].translation();
   const double sigma = 0.05;
   const auto update = iterated_update(joint.estimate, joint.clones,
                                       relative_position(joint, predicted + offset, sigma), FilterConfig{});
@@ -114,10 +114,40 @@ TEST(JointUpdate, KnowsTheWayFromAClonePreciselyHoweverUnsureBothAre) {
   EXPECT_NEAR(relative, 1e-4, 1e-5);
 }
 
+TEST(JointUpdate, ImprovesAnUnknownPoseAsWellAsTheState) {
+  // The state's position is known from elsewhere; the sensor sees it from its own unknown place, turned.
+  Estimate estimate;
+  estimate.covariance = 1e-10 * Matrix18::Identity();
+  const Vector3d wrong(0.02, -0.01, 0.03);
+  const SE3 mounted = pose_from(exp_so3(wrong), Vector3d(0.1, 0.2, 0.3));
+  Clones clones = with_unknown(pose_from(SO3::Identity(), Vector3d(0.1, 0.2, 0.3)),
+                               Vector6(Vector6::Constant(0.03 * 0.03)).asDiagonal());
+  const std::vector<Vector3d> points{{4.0, 1.0, 0.5}, {5.0, -2.0, 1.0}, {3.0, 0.5, -1.0}, {-4.0, 3.0, 1.0}};
+  const auto sensor = [&](const NavState& x, std::span<const SE3> poses) {
+    JointEquations sums(1);
+    for (const Vector3d& p_W : points) {
+      const Vector3d p_I = x.T_W_I().inverse().act(p_W), seen = mounted.inverse().act(p_W);
+      const Vector3d p_S = poses[0].inverse().act(p_I), r = seen - p_S;
+      MatrixXd J = MatrixXd::Zero(3, sums.H.cols());
+      J.block<3, 3>(0, ix::size) = -skew(p_S);
+      J.block<3, 3>(0, ix::size + 3) = Matrix3d(poses[0].rotation().transpose());
+      sums.H += 1e6 * J.transpose() * J;
+      sums.b -= 1e6 * J.transpose() * r;
+      sums.cost += 1e6 * r.squaredNorm();
+      sums.inliers += 3;
+    }
+    return sums;
+  };
+  const auto update = iterated_update(estimate, clones, sensor, FilterConfig{});
+  EXPECT_LT(log_so3(mounted.asSO3().inverse() * update.clones.poses[0].asSO3()).norm(), 1e-4);
+  EXPECT_LT((mounted.translation() - update.clones.poses[0].translation()).norm(), 1e-3);
+  EXPECT_LT(update.clones.covariance.trace(), 1e-5);
+}
+
 TEST(JointUpdate, WithoutInliersReturnsThePrior) {
   Random random(4);
   const Joint joint = random_joint(random);
-  const auto update = iterated_update(joint.estimate, joint.clones, [](const NavState&) { return JointEquations(2); },
+  const auto update = iterated_update(joint.estimate, joint.clones, [](const NavState&, std::span<const SE3>) { return JointEquations(2); },
                                       FilterConfig{});
   EXPECT_EQ(update.posterior.covariance, joint.estimate.covariance);
   EXPECT_EQ(update.clones.with_state, joint.clones.with_state);
@@ -127,7 +157,7 @@ TEST(JointUpdate, RefusesStepsThatRaiseTheCost) {
   Random random(5);
   const Joint joint = random_joint(random);
   const Vector3d start = joint.estimate.mean.p_W;
-  const auto misleading = [start](const NavState& x) {
+  const auto misleading = [start](const NavState& x, std::span<const SE3>) {
     JointEquations sums(2);
     sums.H.block<3, 3>(ix::p, ix::p) = 1e4 * Matrix3d::Identity();
     sums.b.segment<3>(ix::p) = 1e4 * Vector3d(0.1, 0.0, 0.0);  // points away from its own minimum

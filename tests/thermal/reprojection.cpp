@@ -77,6 +77,43 @@ TEST(PointResidual, DerivativesToBothPosesMatchCentralDifferences) {
     }
 }
 
+TEST(PointResidual, DerivativeToTheCamerasPoseOnTheRigMatchesCentralDifferences) {
+  Random random(21);
+  for (const Camera& camera : {test::thermal_camera(), test::fisheye_camera()})
+    for (int i = 0; i < 50; ++i) {
+      const Scene scene = random_scene(random, camera);
+      const PointObservation point = random_point(random, scene);
+      const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig);
+      if (!at) continue;
+      const Matrix2x6 expected = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
+        Rig rig = scene.rig;
+        rig.T_I_C = moved(rig.T_I_C, d);
+        return point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, rig)->r_px;
+      });
+      EXPECT_LT((at->J_camera - expected).norm(), 1e-5 * expected.norm() + 1e-6);
+    }
+}
+
+TEST(LineResidual, DerivativeToTheCamerasPoseOnTheRigMatchesCentralDifferences) {
+  Random random(22);
+  int checked = 0;
+  for (const Camera& camera : {test::thermal_camera(), test::fisheye_camera()})
+    for (int i = 0; i < 50; ++i) {
+      const Scene scene = random_scene(random, camera);
+      const LineObservation line = random_line(random, scene);
+      const auto at = line_residual(scene.T_W_I, line, scene.rig);
+      if (!at) continue;
+      const Matrix2x6 expected = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
+        Rig rig = scene.rig;
+        rig.T_I_C = moved(rig.T_I_C, d);
+        return line_residual(scene.T_W_I, line, rig)->residual.r_px;
+      });
+      EXPECT_LT((at->residual.J_camera - expected).norm(), 1e-4 * expected.norm() + 1e-6);
+      ++checked;
+    }
+  EXPECT_GT(checked, 50);
+}
+
 TEST(PointResidual, NoiseIsWhatTheDepthsErrorDoesInTheImage) {
   Random random(12);
   for (int i = 0; i < 50; ++i) {

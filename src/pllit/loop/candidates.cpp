@@ -20,7 +20,7 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates(const Anchor& here) co
   std::vector<Candidate> near, alike;
   for (std::size_t i = 0; i < anchors_.size(); ++i) {
     const Anchor& there = anchors_[i];
-    const Keyframe& earlier = keyframes_[static_cast<std::size_t>(there.keyframe)];
+    const LoopKeyframe& earlier = keyframes_[static_cast<std::size_t>(there.keyframe)];
     if (keyframes_[static_cast<std::size_t>(here.keyframe)].way_m - earlier.way_m < config.min_way_m) break;
     const UncertainMotion motion = expected(there.keyframe, here.keyframe);
     const double distance_m = motion.T_a_b.translation().norm();
@@ -55,7 +55,7 @@ SearchWindow LoopCloser::window_for(const Anchor& here, const Candidate& candida
   const Anchor& there = anchors_[candidate.anchor];
   if (candidate.found_by == FoundBy::descriptor)
     return {{Eigen::Vector2d::Zero(), candidate.alignment.yaw_rad}, descriptor_reach_m, descriptor_reach_rad};
-  const Keyframe &earlier = keyframes_[static_cast<std::size_t>(there.keyframe)],
+  const LoopKeyframe &earlier = keyframes_[static_cast<std::size_t>(there.keyframe)],
                  &later = keyframes_[static_cast<std::size_t>(here.keyframe)];
   const UncertainMotion motion = expected(there.keyframe, here.keyframe);
   const SE3 T_a_b = pose_from(levelled(earlier.up_I), Vector3d::Zero()) * motion.T_a_b *

@@ -26,7 +26,7 @@ class CompactCloud {
 };
 
 /// The frame O is the odometry's: smooth, and drifting.
-struct Keyframe {
+struct LoopKeyframe {
   Time time{};
   SE3 T_O_I{};
   Matrix6 step_covariance = Matrix6::Zero();  ///< of the motion since the keyframe before: (theta, p) on its right

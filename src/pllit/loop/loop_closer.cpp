@@ -9,16 +9,16 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-double way_gap(const Keyframe& a, const Keyframe& b) { return std::abs(b.way_m - a.way_m); }
+double way_gap(const LoopKeyframe& a, const LoopKeyframe& b) { return std::abs(b.way_m - a.way_m); }
 
 }  // namespace
 
-void LoopCloser::add(Keyframe keyframe) {
+void LoopCloser::add(LoopKeyframe keyframe) {
   keyframes_.push_back(std::move(keyframe));
   add_to_graph(keyframes_.size() - 1);
   const double reach_m = config_.candidates.reach_m;
   while (keyframes_.back().way_m >= next_anchor_m_ + reach_m) {
-    const auto at = std::ranges::lower_bound(keyframes_, next_anchor_m_, {}, &Keyframe::way_m);
+    const auto at = std::ranges::lower_bound(keyframes_, next_anchor_m_, {}, &LoopKeyframe::way_m);
     look_from(static_cast<std::size_t>(at - keyframes_.begin()));
     next_anchor_m_ += config_.candidates.anchor_m;
   }
@@ -26,7 +26,7 @@ void LoopCloser::add(Keyframe keyframe) {
 
 void LoopCloser::finish() {
   while (!keyframes_.empty() && keyframes_.back().way_m >= next_anchor_m_) {
-    const auto at = std::ranges::lower_bound(keyframes_, next_anchor_m_, {}, &Keyframe::way_m);
+    const auto at = std::ranges::lower_bound(keyframes_, next_anchor_m_, {}, &LoopKeyframe::way_m);
     look_from(static_cast<std::size_t>(at - keyframes_.begin()));
     next_anchor_m_ += config_.candidates.anchor_m;
   }
@@ -46,8 +46,8 @@ int LoopCloser::accepted() const { return static_cast<int>(std::ranges::count(re
 
 std::size_t LoopCloser::bytes() const {
   std::size_t bytes = anchors_.capacity() * sizeof(Anchor) + records_.capacity() * sizeof(LoopRecord) +
-                      keyframes_.capacity() * (sizeof(Keyframe) + sizeof(UncertainMotion) + sizeof(SE3));
-  for (const Keyframe& keyframe : keyframes_) bytes += keyframe.cloud.bytes();
+                      keyframes_.capacity() * (sizeof(LoopKeyframe) + sizeof(UncertainMotion) + sizeof(SE3));
+  for (const LoopKeyframe& keyframe : keyframes_) bytes += keyframe.cloud.bytes();
   return bytes;
 }
 
@@ -66,8 +66,8 @@ void LoopCloser::look_from(std::size_t keyframe) {
 
 Submap LoopCloser::submap_around(std::size_t keyframe) const {
   const double way_m = keyframes_[keyframe].way_m, reach_m = config_.candidates.reach_m;
-  const auto first = std::ranges::lower_bound(keyframes_, way_m - reach_m, {}, &Keyframe::way_m);
-  const auto last = std::ranges::upper_bound(keyframes_, way_m + reach_m, {}, &Keyframe::way_m);
+  const auto first = std::ranges::lower_bound(keyframes_, way_m - reach_m, {}, &LoopKeyframe::way_m);
+  const auto last = std::ranges::upper_bound(keyframes_, way_m + reach_m, {}, &LoopKeyframe::way_m);
   const auto index = [&](auto at) { return static_cast<std::size_t>(at - keyframes_.begin()); };
   return make_submap(keyframes_, index(first), index(last) - 1, keyframe, config_.keyframes.voxel_m,
                      config_.keyframes.range_m);
@@ -75,7 +75,7 @@ Submap LoopCloser::submap_around(std::size_t keyframe) const {
 
 LoopRecord LoopCloser::tried(const Anchor& here, const Submap& submap, const Candidate& candidate) const {
   const Anchor& there = anchors_[candidate.anchor];
-  const Keyframe &earlier = keyframes_[static_cast<std::size_t>(there.keyframe)],
+  const LoopKeyframe &earlier = keyframes_[static_cast<std::size_t>(there.keyframe)],
                  &later = keyframes_[static_cast<std::size_t>(here.keyframe)];
   LoopRecord record{.earlier = there.keyframe,
                     .later = here.keyframe,
@@ -187,7 +187,7 @@ UncertainMotion LoopCloser::expected(int earlier, int later) const {
 }
 
 double LoopCloser::way_between(int earlier, int later) const {
-  const auto at = [this](int k) -> const Keyframe& { return keyframes_[static_cast<std::size_t>(k)]; };
+  const auto at = [this](int k) -> const LoopKeyframe& { return keyframes_[static_cast<std::size_t>(k)]; };
   const double along_m = way_gap(at(earlier), at(later));
   if (!last_loop_) return along_m;
   const LoopRecord& loop = records_[*last_loop_];
@@ -199,7 +199,7 @@ double LoopCloser::plausible_m(int earlier, int later) const {
 }
 
 void LoopCloser::add_to_graph(std::size_t k) {
-  const Keyframe& keyframe = keyframes_[k];
+  const LoopKeyframe& keyframe = keyframes_[k];
   odometry_.append(keyframe.T_O_I, keyframe.step_covariance);
   const int pose = static_cast<int>(k);
   if (!graph_) graph_.emplace(keyframe.T_O_I, 0.1);
@@ -224,7 +224,7 @@ void LoopCloser::rebuild_graph() {
 PoseGraph LoopCloser::whole_graph() const {
   PoseGraph graph{.guesses_M = poses_M_, .odometry = {}, .loops = {}, .verticals = {}};
   for (int k = 0; k < odometry_.size(); ++k) {
-    const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
+    const LoopKeyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
     if (k > 0)
       graph.odometry.push_back(
           {k - 1, k, odometry_.between(k - 1, k).T_a_b, odometry_factor_ * keyframe.step_covariance});

@@ -16,12 +16,12 @@ class LoopCloser {
   explicit LoopCloser(const LoopConfig& config) : config_(config) {}
 
   /// Takes the next keyframe and looks for loops as far as submaps are complete.
-  void add(Keyframe keyframe);
+  void add(LoopKeyframe keyframe);
   /// No more keyframes come: looks at the last places, and solves the whole graph once more, leaving out loops that do
   /// not agree with the rest.
   void finish();
 
-  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  const std::vector<LoopKeyframe>& keyframes() const { return keyframes_; }
   /// Of the keyframes, in the frame M of the corrected map; the odometry's own while no loop is closed.
   const std::vector<SE3>& poses_M() const { return poses_M_; }
   /// All candidates so far, those still waiting for others to agree included.
@@ -40,7 +40,7 @@ class LoopCloser {
     std::size_t anchor = 0;
     FoundBy found_by = FoundBy::radius;
     double distance_m = 0.0;
-    Alignment alignment{};
+    HeadingMatch alignment{};
   };
 
   void add_to_graph(std::size_t k);
@@ -60,7 +60,7 @@ class LoopCloser {
   double plausible_m(int earlier, int later) const;
 
   LoopConfig config_;
-  std::vector<Keyframe> keyframes_;
+  std::vector<LoopKeyframe> keyframes_;
   OdometryChain odometry_;
   std::optional<IncrementalGraph> graph_;
   std::vector<SE3> poses_M_;

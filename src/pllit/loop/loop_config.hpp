@@ -3,7 +3,7 @@
 
 namespace pllit {
 
-struct KeyframeConfig {
+struct LoopKeyframeConfig {
   double spacing_m = 2.0;     ///< way between two keyframes
   double spacing_deg = 30.0;  ///< or a turn
   double voxel_m = 0.3;       ///< spacing of the points that are kept
@@ -40,7 +40,7 @@ struct ConsistencyConfig {
 
 struct LoopConfig {
   bool enabled = true;
-  KeyframeConfig keyframes;
+  LoopKeyframeConfig keyframes;
   CandidateConfig candidates;
   RegistrationConfig registration;
   ConsistencyConfig consistency;

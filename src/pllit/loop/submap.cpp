@@ -32,7 +32,7 @@ std::vector<Column> columns_of(const std::vector<Vector3f>& points_H) {
   return upright;
 }
 
-Submap make_submap(std::span<const Keyframe> keyframes, std::size_t first, std::size_t last, std::size_t anchor,
+Submap make_submap(std::span<const LoopKeyframe> keyframes, std::size_t first, std::size_t last, std::size_t anchor,
                    double voxel_m, double range_m) {
   const SE3 T_H_O = pose_from(levelled(keyframes[anchor].up_I), Vector3d::Zero()) * keyframes[anchor].T_O_I.inverse();
   const auto range2 = static_cast<float>(range_m * range_m);

@@ -28,7 +28,7 @@ struct Submap {
 SO3 levelled(const Vector3d& up_I);
 
 /// Keyframes [first, last] joined along the odometry, in the level frame of `anchor`, thinned out.
-Submap make_submap(std::span<const Keyframe> keyframes, std::size_t first, std::size_t last, std::size_t anchor,
+Submap make_submap(std::span<const LoopKeyframe> keyframes, std::size_t first, std::size_t last, std::size_t anchor,
                    double voxel_m, double range_m);
 
 /// The columns of a levelled cloud, in a fixed order.

@@ -3,7 +3,7 @@
 namespace pllit {
 namespace {
 
-void list(Section section, KeyframeConfig& config) {
+void list(Section section, LoopKeyframeConfig& config) {
   section.add(PLLIT_KEY(spacing_m), "Way between two keyframes.", "m", {0.1, 100.0});
   section.add(PLLIT_KEY(spacing_deg), "Or a turn.", "deg", {1.0, 180.0});
   section.add(PLLIT_KEY(voxel_m), "Spacing of the points that are kept.", "m", {0.05, 5.0});

@@ -12,6 +12,10 @@ void list_thermal(Section section, VisionConfig& config) {
 
 void list_vision(Section section, VisionConfig& config) {
   section.add("image_spacing_s", config.image_spacing, "Images that follow sooner are left out.", "s", {0.0, 10.0});
+  section.add(PLLIT_KEY(T_I_C_turn_deg), "How well the camera's attitude on the rig is known, one sigma; it is refined.",
+              "deg", {1e-4, 20.0});
+  section.add(PLLIT_KEY(T_I_C_shift_m), "How well its place on the rig is known, one sigma; it is refined.", "m",
+              {1e-5, 1.0});
   section.add(PLLIT_KEY(depth_window_s), "LiDAR points that give features their depth are at most so old.", "s",
               {0.05, 30.0});
   section.add(PLLIT_KEY(most_misfit),

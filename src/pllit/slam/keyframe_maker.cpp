@@ -23,7 +23,7 @@ Matrix6 step_covariance(const FrameEstimate& a, const FrameEstimate& b) {
 
 }  // namespace
 
-std::optional<Keyframe> KeyframeMaker::take(const FrameEstimate& frame) {
+std::optional<LoopKeyframe> KeyframeMaker::take(const FrameEstimate& frame) {
   const SE3 T_W_I = frame.posterior.mean.T_W_I();
   if (last_) way_m_ += (frame.posterior.mean.p_W - last_p_W_).norm();
   last_p_W_ = frame.posterior.mean.p_W;
@@ -31,7 +31,7 @@ std::optional<Keyframe> KeyframeMaker::take(const FrameEstimate& frame) {
                    turn_deg(last_->posterior.mean.T_W_I(), T_W_I) >= config_.spacing_deg;
   gather(frame);
   if (!due) return std::nullopt;
-  Keyframe keyframe = made_at(frame);
+  LoopKeyframe keyframe = made_at(frame);
   last_ = frame;
   last_->cloud = {};
   points_last_.clear();
@@ -56,9 +56,9 @@ void KeyframeMaker::gather(const FrameEstimate& frame) {
   for (const Vector3f& p_I : thinned(near, config_.voxel_m)) points_last_.push_back(R * p_I + t);
 }
 
-Keyframe KeyframeMaker::made_at(const FrameEstimate& frame) const {
+LoopKeyframe KeyframeMaker::made_at(const FrameEstimate& frame) const {
   const NavState& state = frame.posterior.mean;
-  Keyframe keyframe{.time = state.time, .T_O_I = state.T_W_I(), .way_m = way_m_, .cloud = {}};
+  LoopKeyframe keyframe{.time = state.time, .T_O_I = state.T_W_I(), .way_m = way_m_, .cloud = {}};
   const SE3 T_I_last = last_ ? keyframe.T_O_I.inverse() * last_->posterior.mean.T_W_I() : SE3::Identity();
   if (last_) keyframe.step_covariance = step_covariance(*last_, frame);
   keyframe.up_I = -(state.R_W_I.rotation().transpose() * state.gravity_W).normalized();

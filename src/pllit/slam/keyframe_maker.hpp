@@ -12,17 +12,17 @@ namespace pllit {
 
 class KeyframeMaker {
  public:
-  explicit KeyframeMaker(const KeyframeConfig& config) : config_(config) {}
+  explicit KeyframeMaker(const LoopKeyframeConfig& config) : config_(config) {}
 
   /// Takes the next frame; gives a keyframe where the way since the last one is long enough, the first frame's at once.
   /// Scans that did not match are left out.
-  std::optional<Keyframe> take(const FrameEstimate& frame);
+  std::optional<LoopKeyframe> take(const FrameEstimate& frame);
 
  private:
   void gather(const FrameEstimate& frame);
-  Keyframe made_at(const FrameEstimate& frame) const;
+  LoopKeyframe made_at(const FrameEstimate& frame) const;
 
-  KeyframeConfig config_;
+  LoopKeyframeConfig config_;
   std::optional<FrameEstimate> last_;  ///< keyframe's, without its cloud
   std::optional<SE3> last_gathered_W_I_;
   std::vector<Vector3f> points_last_;  ///< seen since, in the last keyframe's I

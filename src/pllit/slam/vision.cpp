@@ -19,10 +19,22 @@ double cosine_of_corner(const Camera& camera) {
   return std::cos(std::min(angle + margin_rad, M_PI));
 }
 
+Matrix6 camera_covariance(const VisionConfig& config) {
+  const double turn_rad = config.T_I_C_turn_deg * M_PI / 180.0;
+  Vector6 variances;
+  variances << Vector3d::Constant(turn_rad * turn_rad),
+      Vector3d::Constant(config.T_I_C_shift_m * config.T_I_C_shift_m);
+  return variances.asDiagonal();
+}
+
 }  // namespace
 
 Vision::Vision(const Rig& rig, const VisionConfig& config, std::unique_ptr<FeatureExtractor> extractor)
-    : rig_(rig), config_(config), extractor_(std::move(extractor)), least_cos_(cosine_of_corner(*rig.camera)) {}
+    : rig_(rig),
+      config_(config),
+      extractor_(std::move(extractor)),
+      least_cos_(cosine_of_corner(*rig.camera)),
+      clones_(with_unknown(rig.T_I_C, camera_covariance(config))) {}
 
 void Vision::look_at(const CameraFrame& image) {
   looking_ = std::async(std::launch::async, [this, image] { return look(image); });
@@ -55,7 +67,7 @@ bool Vision::is_calibrated(const Look& look) const { return config_.photometric 
 
 void Vision::add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time) {
   while (!points_.empty() && to_seconds(time - points_.front().time) > config_.depth_window_s) points_.pop_front();
-  const SE3 T_C_I = rig_.T_I_C.inverse();
+  const SE3 T_C_I = T_I_C().inverse();
   const Eigen::Matrix3f R_C_I = T_C_I.rotation().cast<float>();
   const Vector3f p_C_I = T_C_I.translation().cast<float>();
   const Matrix3d R_W_I = T_W_I.rotation();
@@ -81,7 +93,8 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prio
   range_ = look->range;
   facts.points = static_cast<int>(look->features.points_px.size());
 
-  const SE3 T_W_C = prior.mean.T_W_I() * rig_.T_I_C;
+  const SE3 T_W_C = prior.mean.T_W_I() * T_I_C();
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].T_W_C = clones_.poses[i + 1] * T_I_C();
   const Tracks tracks = match_to_keyframes(look->features, T_W_C, keyframes_, *rig_.camera, config_.matching);
   facts.matches = static_cast<int>(tracks.points.size());
   facts.anchored = static_cast<int>(std::ranges::count_if(tracks.points, [](const auto& m) { return m.line_px >= 0; }));
@@ -95,11 +108,7 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prio
 
   const Estimate posterior = update(prior, observe(look->features, tracks), facts);
   if (wants_keyframe(tracks, keyframes_, look->features, image.time, rig_.camera->width, config_.keyframes)) {
-    if (std::ssize(keyframes_) >= config_.keyframes.most) {
-      const std::size_t gone = expendable(tracks, keyframes_);
-      keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(gone));
-      remove_clone(clones_, gone);
-    }
+    if (std::ssize(keyframes_) >= config_.keyframes.most) drop_keyframe(expendable(tracks, keyframes_));
     keep(std::move(*look), image.time, posterior);
   }
   clock.charge(Stage::thermal);
@@ -127,8 +136,11 @@ ImageObservations Vision::observe(const Features& features, const Tracks& tracks
 /// Stage II of the paper's sequential filter; an image whose innovation contradicts the prior is not believed at all.
 Estimate Vision::update(const Estimate& prior, const ImageObservations& observations, ImageFacts& facts) {
   const Eigen::MatrixXd covariance = joint_covariance(prior, clones_);
-  const auto linearize = [&](const NavState& state) {
-    return linearize_image(state, clones_.T_W_I, observations, rig_, config_.residuals, covariance);
+  Rig rig = rig_;
+  const auto linearize = [&](const NavState& state, std::span<const SE3> poses) {
+    rig.T_I_C = poses.front();
+    return linearize_image(state, poses.subspan(1), observations, rig, config_.residuals, covariance,
+                           CameraPose::unknown);
   };
   JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{});
   facts.candidates = result.last.candidates;
@@ -136,6 +148,9 @@ Estimate Vision::update(const Estimate& prior, const ImageObservations& observat
   if (facts.inliers < config_.least_inliers) return prior;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(covariance.rows());
   moved.head<error_index::size>() = boxminus(result.posterior.mean, prior.mean);
+  const SE3& refined = result.clones.poses.front();
+  moved.segment<3>(error_index::size) = log_so3(T_I_C().asSO3().inverse() * refined.asSO3());
+  moved.segment<3>(error_index::size + 3) = refined.translation() - T_I_C().translation();
   const Innovation news = innovation(result.last, moved, covariance);
   facts.misfit = news.misfit;
   if (news.misfit > config_.most_misfit) {
@@ -151,7 +166,7 @@ Estimate Vision::update(const Estimate& prior, const ImageObservations& observat
 }
 
 void Vision::keep(Look look, Time time, const Estimate& posterior) {
-  Keyframe keyframe{.id = next_id_++, .time = time, .T_W_C = posterior.mean.T_W_I() * rig_.T_I_C};
+  Keyframe keyframe{.id = next_id_++, .time = time, .T_W_C = posterior.mean.T_W_I() * T_I_C()};
   keyframe.features = std::move(look.features);
   std::vector<Vector3f> points_W;
   for (const SeenPoints& seen : points_) points_W.insert(points_W.end(), seen.points_W.begin(), seen.points_W.end());
@@ -173,9 +188,14 @@ Expected<std::unique_ptr<Vision>> make_vision(const Rig& rig, const VisionConfig
   return std::make_unique<Vision>(rig, config, std::make_unique<ClassicalExtractor>(config.classical));
 }
 
+void Vision::drop_keyframe(std::size_t index) {
+  keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(index));
+  remove_clone(clones_, index + 1);
+}
+
 void Vision::restart() {
   keyframes_.clear();
-  clones_ = {};
+  clones_ = with_unknown(T_I_C(), clones_.covariance.topLeftCorner<6, 6>());
   points_.clear();
 }
 

@@ -35,6 +35,8 @@ class Vision {
   /// Forgets what was built on poses that are not to be trusted any more.
   void restart();
 
+  /// As refined so far.
+  const SE3& T_I_C() const { return clones_.poses.front(); }
   /// Raw to calibrated greys of the last image.
   const GreyCurve& curve() const { return chain_.curve; }
 
@@ -52,6 +54,7 @@ class Vision {
   Estimate update(const Estimate& prior, const ImageObservations& observations, ImageFacts& facts);
   void keep(Look look, Time time, const Estimate& posterior);
   bool is_calibrated(const Look& look) const;
+  void drop_keyframe(std::size_t index);
 
   Rig rig_;
   VisionConfig config_;
@@ -62,7 +65,7 @@ class Vision {
   PhotometricChain chain_;
   std::optional<CountRange> range_;
   std::vector<Keyframe> keyframes_;
-  Clones clones_;  ///< poses of the keyframes, in the same order
+  Clones clones_;  ///< T_I_C, which is refined, then the poses of the keyframes in their order
   struct SeenPoints {
     Time time;
     std::vector<Vector3f> points_W;

@@ -22,28 +22,69 @@ MatrixXd without_columns(const MatrixXd& m, Index begin) {
   return kept;
 }
 
-/// Errors of the state moved to another tangent space of the manifold; those of the poses stay.
-void turn(MatrixXd& joint, const Matrix3d& J_new_old) {
-  joint.topRows<3>() = (J_new_old * joint.topRows<3>()).eval();
-  joint.leftCols<3>() = (joint.leftCols<3>() * J_new_old.transpose()).eval();
+/// Errors from `begin` on, three of them, moved to another tangent space of the manifold.
+void turn(MatrixXd& joint, Index begin, const Matrix3d& J_new_old) {
+  joint.middleRows<3>(begin) = (J_new_old * joint.middleRows<3>(begin)).eval();
+  joint.middleCols<3>(begin) = (joint.middleCols<3>(begin) * J_new_old.transpose()).eval();
 }
 
-/// Covariance after a gain that only the state gets (Joseph's form). `optimal` is the covariance after the full gain.
-MatrixXd after_state_gain(const MatrixXd& prior, const MatrixXd& optimal, const MatrixXd& H) {
-  const MatrixXd gain = (optimal * H).topRows<ix::size>();  // K J of the state
+/// Covariance after a gain that only the first `gaining` errors get (Joseph's form). `optimal` is the covariance after
+/// the full gain.
+MatrixXd after_gain(const MatrixXd& prior, const MatrixXd& optimal, const MatrixXd& H, Index gaining) {
+  const MatrixXd gain = (optimal * H).topRows(gaining);  // K J
   MatrixXd kept = MatrixXd::Identity(prior.rows(), prior.cols());
-  kept.topRows<ix::size>() -= gain;
+  kept.topRows(gaining) -= gain;
   MatrixXd posterior = kept * prior * kept.transpose();
-  posterior.topLeftCorner<ix::size, ix::size>() += gain * optimal.leftCols<ix::size>();
+  posterior.topLeftCorner(gaining, gaining) += gain * optimal.leftCols(gaining);
   return posterior;
 }
 
+/// The state and the unknown poses together, as one point on their manifold.
+struct Unknowns {
+  NavState state;
+  std::vector<SE3> poses;  ///< all, of which the first `estimated` move
+  std::size_t estimated;
+
+  static Index begin_of(std::size_t pose) { return ix::size + kPose * static_cast<Index>(pose); }
+  Index size() const { return begin_of(estimated); }
+
+  void move(const VectorXd& step) {
+    state = boxplus(state, step.head<ix::size>());
+    for (std::size_t i = 0; i < estimated; ++i)
+      poses[i] = pose_from(poses[i].asSO3() * exp_so3(step.segment<3>(begin_of(i))),
+                           poses[i].translation() + step.segment<3>(begin_of(i) + 3));
+  }
+  /// Errors by which this is away from `other`, zero for the poses that do not move.
+  VectorXd minus(const Unknowns& other) const {
+    VectorXd d = VectorXd::Zero(begin_of(poses.size()));
+    d.head<ix::size>() = boxminus(state, other.state);
+    for (std::size_t i = 0; i < estimated; ++i) {
+      d.segment<3>(begin_of(i)) = log_so3(other.poses[i].asSO3().inverse() * poses[i].asSO3());
+      d.segment<3>(begin_of(i) + 3) = poses[i].translation() - other.poses[i].translation();
+    }
+    return d;
+  }
+  /// Where the three errors of each moving rotation begin.
+  std::vector<Index> turns() const {
+    std::vector<Index> begins{ix::theta};
+    for (std::size_t i = 0; i < estimated; ++i) begins.push_back(begin_of(i));
+    return begins;
+  }
+};
+
 }  // namespace
+
+Clones with_unknown(const SE3& pose, const Matrix6& covariance) {
+  return {.poses = {pose},
+          .with_state = MatrixXd::Zero(ix::size, kPose),
+          .covariance = covariance,
+          .estimated = 1};
+}
 
 void add_clone(Clones& clones, const Estimate& estimate) {
   const Index n = clones.covariance.rows();
   const MatrixXd with_old = clones.with_state.topRows<kPose>();
-  clones.T_W_I.push_back(estimate.mean.T_W_I());
+  clones.poses.push_back(estimate.mean.T_W_I());
   clones.covariance.conservativeResize(n + kPose, n + kPose);
   clones.covariance.bottomLeftCorner(kPose, n) = with_old;
   clones.covariance.topRightCorner(n, kPose) = with_old.transpose();
@@ -53,9 +94,9 @@ void add_clone(Clones& clones, const Estimate& estimate) {
 }
 
 void remove_clone(Clones& clones, std::size_t index) {
-  assert(index < clones.size());
+  assert(index >= clones.estimated && index < clones.size());
   const Index begin = kPose * static_cast<Index>(index);
-  clones.T_W_I.erase(clones.T_W_I.begin() + static_cast<std::ptrdiff_t>(index));
+  clones.poses.erase(clones.poses.begin() + static_cast<std::ptrdiff_t>(index));
   clones.with_state = without_columns(clones.with_state, begin);
   clones.covariance = without_columns(without_columns(clones.covariance, begin).transpose(), begin).transpose();
 }
@@ -75,33 +116,38 @@ JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const L
                             const FilterConfig& config) {
   JointUpdate result{.posterior = prior, .clones = clones};
   const MatrixXd joint_prior = joint_covariance(prior, clones);
-  NavState x = prior.mean;
+  const Unknowns before{prior.mean, clones.poses, clones.estimated};
+  Unknowns x = before;
   MatrixXd joint = joint_prior;
   while (result.iterations < config.max_iterations && !result.converged) {
-    result.last = linearize(x);
+    result.last = linearize(x.state, x.poses);
     if (result.iterations++ == 0) result.first = result.last;
-    if (result.last.inliers == 0) return {.posterior = prior, .clones = clones, .first = result.first, .last = result.last};
+    if (result.last.inliers == 0)
+      return {.posterior = prior, .clones = clones, .first = result.first, .last = result.last};
 
-    VectorXd d = VectorXd::Zero(joint.rows());
-    d.head<ix::size>() = boxminus(x, prior.mean);
-    const Matrix3d J = right_jacobian(d.head<3>());
-    d.head<3>() = (J * d.head<3>()).eval();
+    VectorXd d = x.minus(before);
     MatrixXd P = joint_prior;
-    turn(P, J);
+    for (const Index begin : x.turns()) {
+      const Matrix3d J = right_jacobian(d.segment<3>(begin));
+      d.segment<3>(begin) = (J * d.segment<3>(begin)).eval();
+      turn(P, begin, J);
+    }
     // (P^-1 + H) dx = b - P^-1 d, multiplied by P from the left so that P need not be inverted.
     const Eigen::PartialPivLU<MatrixXd> system(MatrixXd::Identity(P.rows(), P.cols()) + P * result.last.H);
-    const Vector18 step = system.solve(P * result.last.b - d).head<ix::size>();
-    joint = after_state_gain(P, system.solve(P), result.last.H);
-    x = boxplus(x, step);
-    turn(joint, right_jacobian(step.segment<3>(ix::theta)));
+    const VectorXd step = system.solve(P * result.last.b - d);
+    joint = after_gain(P, system.solve(P), result.last.H, x.size());
+    x.move(step);
+    for (const Index begin : x.turns()) turn(joint, begin, right_jacobian(step.segment<3>(begin)));
     result.converged = step.segment<3>(ix::theta).norm() < config.rotation_tolerance_rad &&
                        step.segment<3>(ix::p).norm() < config.position_tolerance_m;
   }
-  if (linearize(x).cost > result.first.cost)
+  if (linearize(x.state, x.poses).cost > result.first.cost)
     return {.posterior = prior, .clones = clones, .first = result.first, .last = result.last};
   joint = 0.5 * (joint + joint.transpose()).eval();
-  result.posterior = {.mean = x, .covariance = joint.topLeftCorner<ix::size, ix::size>()};
+  result.posterior = {.mean = x.state, .covariance = joint.topLeftCorner<ix::size, ix::size>()};
+  result.clones.poses = std::move(x.poses);
   result.clones.with_state = joint.topRightCorner(ix::size, joint.cols() - ix::size);
+  result.clones.covariance = joint.bottomRightCorner(joint.rows() - ix::size, joint.cols() - ix::size);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "pllit/state/iterated_update.hpp"
@@ -9,16 +10,20 @@
 
 namespace pllit {
 
-/// n poses of I in W as they were estimated; they are considered, not improved (Schmidt 1966), so that what was built
-/// on them stays where it is. Errors (theta, p), right perturbation.
+/// n poses, errors (theta, p), right perturbation. The first `estimated` ones are unknowns as the state is: a sensor's
+/// pose on the rig. The others are poses of I in W as they were once estimated; they are considered, not improved
+/// (Schmidt 1966), so that what was built on them stays where it is.
 struct Clones {
-  std::vector<SE3> T_W_I;
+  std::vector<SE3> poses;
   Eigen::MatrixXd with_state{error_index::size, 0};  ///< 18 x 6n: covariance of the state's error with the poses'
   Eigen::MatrixXd covariance{0, 0};                  ///< 6n x 6n: of the poses' errors
+  std::size_t estimated = 0;
 
-  std::size_t size() const { return T_W_I.size(); }
+  std::size_t size() const { return poses.size(); }
 };
 
+/// No poses yet but this one, which is to be estimated, with its covariance.
+Clones with_unknown(const SE3& pose, const Matrix6& covariance);
 /// The present pose as a further one.
 void add_clone(Clones& clones, const Estimate& estimate);
 void remove_clone(Clones& clones, std::size_t index);
@@ -27,19 +32,19 @@ void carry(Clones& clones, const Matrix18& J_now_before);
 /// (18 + 6n) square.
 Eigen::MatrixXd joint_covariance(const Estimate& estimate, const Clones& clones);
 
-/// A sensor's residuals linearised at a state, with the poses where they are.
-using LinearizeJoint = std::function<JointEquations(const NavState&)>;
+/// A sensor's residuals linearised at a state and poses.
+using LinearizeJoint = std::function<JointEquations(const NavState&, std::span<const SE3> poses)>;
 
 struct JointUpdate {
   Estimate posterior;
-  Clones clones;  ///< the same poses; what they share with the posterior
+  Clones clones;  ///< the unknown poses improved, the others the same; what they share with the posterior
   JointEquations first{}, last{};  ///< at the prior and at the last linearisation point
   int iterations = 0;
   bool converged = false;
 };
 
 /// As iterated_update, for measurements that relate the state to earlier poses: the gain is the one of the joint problem
-/// and is given to the state alone. Measurements whose cost the steps do not lower return the prior.
+/// and is given to the state and the unknown poses. Measurements whose cost the steps do not lower return the prior.
 JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const LinearizeJoint& linearize,
                             const FilterConfig& config);
 

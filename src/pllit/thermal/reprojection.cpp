@@ -31,7 +31,7 @@ std::optional<EndPoint> undistorted(const Vector2d& pixel_px, const Camera& came
 /// The line of the paper's Pluecker coordinates seen from a pose: normal n_C of the plane through camera and line.
 struct InterpretationPlane {
   Vector3d n_C;
-  Matrix3x6 J_n_pose;
+  Matrix3x6 J_n_pose, J_n_camera;
   Eigen::Matrix<double, 3, 4> J_n_line;
 };
 
@@ -44,6 +44,7 @@ InterpretationPlane interpretation_plane(const SE3& T_W_I, const LineLandmark& l
   InterpretationPlane plane;
   plane.n_C = R_C_W * m;
   plane.J_n_pose << R_C_I * (skew(R_I_W * m) - skew(R_I_W * d) * skew(T_I_C.translation())), R_C_W * skew(d);
+  plane.J_n_camera << skew(plane.n_C), R_C_I * skew(R_I_W * d);
   // Shifts of both ends move the centre by their mean and turn the direction by their difference over the length.
   const Vector3d from_camera = line.centroid_W - camera_W;
   for (int i = 0; i < 4; ++i) {
@@ -80,7 +81,8 @@ std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_k
   const Matrix3d R_W_K = T_W_I_keyframe.rotation();
   const Vector3d point_K = rig.T_I_C.act(observation.p_K_m);  // in I of the keyframe
   const Vector3d point_I = R_I_W * (R_W_K * point_K + (T_W_I_keyframe.translation() - T_W_I.translation()));
-  const auto projection = rig.camera->project_with_slope(R_C_I * (point_I - rig.T_I_C.translation()));
+  const Vector3d point_C = R_C_I * (point_I - rig.T_I_C.translation());
+  const auto projection = rig.camera->project_with_slope(point_C);
   if (!projection) return std::nullopt;
 
   const Eigen::Matrix<double, 2, 3> J_pixel_I = projection->J_pixel_point * R_C_I;
@@ -89,6 +91,9 @@ std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_k
   residual.r_px = observation.observed_px - projection->pixel_px;
   residual.J_now << -J_pixel_I * skew(point_I), J_pixel_W;
   residual.J_keyframe << J_pixel_W * R_W_K * skew(point_K), -J_pixel_W;
+  const Matrix3d R_I_K = R_I_W * R_W_K, R_C_K = R_C_I * R_I_K * rig.T_I_C.rotation();
+  residual.J_camera << -projection->J_pixel_point * (skew(point_C) - R_C_K * skew(observation.p_K_m)),
+      -J_pixel_I * (R_I_K - Matrix3d::Identity());
   const Vector2d per_sigma =
       J_pixel_W * (R_W_K * (rig.T_I_C.rotation() * observation.p_K_m.normalized())) * observation.sigma_ray_m;
   residual.model_px2 = per_sigma * per_sigma.transpose();
@@ -110,6 +115,7 @@ std::optional<LineResidual> line_residual(const SE3& T_W_I, const LineObservatio
   for (int i = 0; i < 2; ++i) {
     line.residual.r_px[i] = distances[i].px;
     line.residual.J_now.row(i) = distances[i].J_px_n * plane.J_n_pose;
+    line.residual.J_camera.row(i) = distances[i].J_px_n * plane.J_n_camera;
     line.J_line.row(i) = distances[i].J_px_n * plane.J_n_line;
   }
   const Vector2d along = (observation.end_px - observation.start_px).normalized();

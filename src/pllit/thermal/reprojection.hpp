@@ -16,6 +16,7 @@ struct ImageResidual {
   Eigen::Vector2d r_px = Eigen::Vector2d::Zero();
   Matrix2x6 J_now = Matrix2x6::Zero();                  ///< to the pose now
   Matrix2x6 J_keyframe = Matrix2x6::Zero();             ///< to the keyframe's pose; zero for lines
+  Matrix2x6 J_camera = Matrix2x6::Zero();               ///< to T_I_C, likewise
   Eigen::Matrix2d model_px2 = Eigen::Matrix2d::Zero();  ///< covariance that the point's depth or the line brings along
 };
 

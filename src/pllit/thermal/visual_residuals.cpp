@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -18,8 +19,7 @@ using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
-using Matrix12 = Eigen::Matrix<double, 12, 12>;
-using Matrix2x12 = Eigen::Matrix<double, 2, 12>;
+using Matrix6x2 = Eigen::Matrix<double, 6, 2>;
 
 constexpr Index kPose = ix::pose_size;
 
@@ -42,22 +42,24 @@ double mean_weighted_square(double k) {
 /// Adds residuals to the joint equations.
 class Sums {
  public:
-  Sums(std::size_t keyframes, const VisualConfig& config, const MatrixXd& search_covariance)
-      : equations_(keyframes), config_(config), search_(search_covariance) {
+  Sums(std::size_t keyframes, CameraPose camera, const VisualConfig& config, const MatrixXd& search_covariance)
+      : camera_unknown_(camera == CameraPose::unknown),
+        equations_(keyframes + (camera_unknown_ ? 1 : 0)),
+        config_(config),
+        search_(search_covariance) {
     assert(search_.size() == 0 || search_.rows() == equations_.b.size());
   }
 
   /// `keyframe`: its index, or nothing for residuals of the pose now alone.
   void add(const ImageResidual& residual, double sigma_px, std::optional<std::size_t> keyframe) {
     ++equations_.candidates;
-    const Index at = keyframe ? ix::size + kPose * static_cast<Index>(*keyframe) : 0;
+    const Blocks blocks = blocks_of(residual, keyframe);
     const Matrix2d noise = sigma_px * sigma_px * Matrix2d::Identity() + residual.model_px2;
     const Matrix2d information = noise.inverse();
     const double squared = residual.r_px.dot(information * residual.r_px);
-    Matrix2x12 J;
-    J << residual.J_now, residual.J_keyframe;
-    const double beyond =
-        search_.size() == 0 ? squared : residual.r_px.dot((noise + searched(J, at)).inverse() * residual.r_px);
+    const double beyond = search_.size() == 0
+                              ? squared
+                              : residual.r_px.dot((noise + searched(blocks)).inverse() * residual.r_px);
     if (const double gate2 = config_.gate * config_.gate; beyond > gate2) {
       equations_.cost += cauchy(squared * gate2 / beyond, config_.loss).cost;
       return;
@@ -66,7 +68,7 @@ class Sums {
     const Loss loss = cauchy(squared, config_.loss);
     equations_.cost += loss.cost;
     equations_.squared += loss.weight * squared;
-    add_blocks(J, loss.weight * information, residual.r_px, at);
+    add_blocks(blocks, loss.weight * information, residual.r_px);
   }
 
   /// A match that cannot be right: as if beyond the gate.
@@ -91,26 +93,44 @@ class Sums {
   }
 
  private:
+  /// Derivatives of one residual to the poses that it depends on, and where their errors begin.
+  struct Block {
+    Index at = 0;
+    Matrix2x6 J;
+  };
+  struct Blocks {
+    std::array<Block, 3> block;
+    std::size_t count = 0;
+    auto begin() const { return block.begin(); }
+    auto end() const { return block.begin() + static_cast<std::ptrdiff_t>(count); }
+  };
+
+  Blocks blocks_of(const ImageResidual& residual, std::optional<std::size_t> keyframe) const {
+    const auto begin_of = [](std::size_t pose) { return ix::size + kPose * static_cast<Index>(pose); };
+    Blocks blocks;
+    blocks.block[blocks.count++] = {0, residual.J_now};
+    if (camera_unknown_) blocks.block[blocks.count++] = {begin_of(0), residual.J_camera};
+    if (keyframe) blocks.block[blocks.count++] = {begin_of(*keyframe + (camera_unknown_ ? 1 : 0)), residual.J_keyframe};
+    return blocks;
+  }
+
   /// Covariance in the image of what the prediction leaves open.
-  Matrix2d searched(const Matrix2x12& J, Index at) const {
-    const auto now = J.leftCols<kPose>(), keyframe = J.rightCols<kPose>();
-    const Matrix2d mixed = now * search_.block<kPose, kPose>(0, at) * keyframe.transpose();
-    return now * search_.topLeftCorner<kPose, kPose>() * now.transpose() + mixed + mixed.transpose() +
-           keyframe * search_.block<kPose, kPose>(at, at) * keyframe.transpose();
+  Matrix2d searched(const Blocks& blocks) const {
+    Matrix2d sum = Matrix2d::Zero();
+    for (const Block& a : blocks)
+      for (const Block& b : blocks) sum += a.J * search_.block<kPose, kPose>(a.at, b.at) * b.J.transpose();
+    return sum;
   }
 
-  void add_blocks(const Matrix2x12& J, const Matrix2d& W, const Vector2d& r_px, Index at) {
-    const Matrix2x12 WJ = W * J;
-    equations_.H.topLeftCorner<kPose, kPose>().noalias() += J.leftCols<kPose>().transpose() * WJ.leftCols<kPose>();
-    equations_.b.head<kPose>().noalias() -= WJ.leftCols<kPose>().transpose() * r_px;
-    if (at == 0) return;
-    const Matrix6 mixed = J.leftCols<kPose>().transpose() * WJ.rightCols<kPose>();
-    equations_.H.block<kPose, kPose>(0, at) += mixed;
-    equations_.H.block<kPose, kPose>(at, 0) += mixed.transpose();
-    equations_.H.block<kPose, kPose>(at, at).noalias() += J.rightCols<kPose>().transpose() * WJ.rightCols<kPose>();
-    equations_.b.segment<kPose>(at).noalias() -= WJ.rightCols<kPose>().transpose() * r_px;
+  void add_blocks(const Blocks& blocks, const Matrix2d& W, const Vector2d& r_px) {
+    for (const Block& a : blocks) {
+      const Matrix6x2 JW = a.J.transpose() * W;
+      equations_.b.segment<kPose>(a.at).noalias() -= JW * r_px;
+      for (const Block& b : blocks) equations_.H.block<kPose, kPose>(a.at, b.at).noalias() += JW * b.J;
+    }
   }
 
+  bool camera_unknown_;
   JointEquations equations_;
   const VisualConfig& config_;
   const MatrixXd& search_;
@@ -154,9 +174,9 @@ std::vector<PointObservation> off_lines(std::span<const PointObservation> points
 
 JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I_keyframes,
                                const ImageObservations& observations, const Rig& rig, const VisualConfig& config,
-                               const MatrixXd& search_covariance) {
+                               const MatrixXd& search_covariance, CameraPose camera) {
   const SE3 T_W_I = state.T_W_I();
-  Sums sums(T_W_I_keyframes.size(), config, search_covariance);
+  Sums sums(T_W_I_keyframes.size(), camera, config, search_covariance);
   const std::vector<double> weights = adaptive_weights(observations.points, config);
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const PointObservation& point = observations.points[i];

@@ -36,10 +36,12 @@ std::vector<PointObservation> off_lines(std::span<const PointObservation> points
 /// Normal equations over the errors of `state` and of the keyframes' poses. Each residual's noise holds the detector's,
 /// by weight, and that of its depth or line; a redescending loss (Cauchy's) bounds what false matches say. Matches
 /// beyond the gate count with their cost at the gate, so that costs of two states can be compared. The rig must have a
-/// camera. `search_covariance`: (18 + 6n) square, of the prediction, for the gate; empty: no doubt.
+/// camera. `search_covariance`: square, of the prediction, for the gate; empty: no doubt. CameraPose::unknown: the
+/// errors of rig.T_I_C stand before those of the keyframes.
+enum class CameraPose { known, unknown };
 JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I_keyframes,
                                const ImageObservations& observations, const Rig& rig, const VisualConfig& config,
-                               const Eigen::MatrixXd& search_covariance = {});
+                               const Eigen::MatrixXd& search_covariance = {}, CameraPose camera = CameraPose::known);
 
 /// Covariance of a keyframe's pose (theta, p; right perturbation) as its own points show it, from the detector's noise
 /// alone. All later matches share it, so it belongs to the clone of the pose, once, when that is made: then a rig at
