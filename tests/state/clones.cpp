@@ -114,6 +114,26 @@ TEST(JointUpdate, KnowsTheWayFromAClonePreciselyHoweverUnsureBothAre) {
   EXPECT_NEAR(relative, 1e-4, 1e-5);
 }
 
+TEST(JointUpdate, MovesTheStateAlongGivenDirectionsOnly) {
+  Random random(8);
+  const Joint joint = random_joint(random);
+  const Vector3d predicted = joint.estimate.mean.p_W - joint.clones.poses[1].translation();
+  const auto sensor = relative_position(joint, predicted + Vector3d(0.05, 0.05, 0.05), 0.01);
+  StateDirections along = StateDirections::Zero(ix::size, 1);
+  along(ix::p + 1, 0) = 1.0;
+  const auto update = iterated_update(joint.estimate, joint.clones, sensor, FilterConfig{}, along);
+  const Vector18 moved = boxminus(update.posterior.mean, joint.estimate.mean);
+  EXPECT_GT(moved[ix::p + 1], 0.01);
+  EXPECT_LT((moved - moved[ix::p + 1] * along.col(0)).norm(), 1e-12);
+  const double before = joint.estimate.covariance(ix::p + 1, ix::p + 1);
+  EXPECT_LT(update.posterior.covariance(ix::p + 1, ix::p + 1), before);
+  EXPECT_NEAR(update.posterior.covariance(ix::p, ix::p), joint.estimate.covariance(ix::p, ix::p), 1e-12);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(joint_covariance(update.posterior, update.clones));
+  EXPECT_GT(eigen.eigenvalues()[0], -1e-12);
+  const auto none = iterated_update(joint.estimate, joint.clones, sensor, FilterConfig{}, StateDirections(ix::size, 0));
+  EXPECT_LT((none.posterior.covariance - joint.estimate.covariance).norm(), 1e-12);
+}
+
 TEST(JointUpdate, ImprovesAnUnknownPoseAsWellAsTheState) {
   // The state's position is known from elsewhere; the sensor sees it from its own unknown place, turned.
   Estimate estimate;

@@ -80,8 +80,8 @@ void Vision::add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I,
   points_.push_back(std::move(seen));
 }
 
-Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prior, ImageFacts& facts,
-                                  StageClock& clock) {
+Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prior,
+                                  const std::optional<StateDirections>& open, ImageFacts& facts, StageClock& clock) {
   assert(looking_.valid());
   auto look = looking_.get();
   clock.charge(Stage::features);
@@ -106,7 +106,7 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prio
   facts.bias_grey = chain_.curve.bias;
   clock.charge(Stage::photometric);
 
-  const Estimate posterior = update(prior, observe(look->features, tracks), facts);
+  const Estimate posterior = update(prior, open, observe(look->features, tracks), facts);
   if (wants_keyframe(tracks, keyframes_, look->features, image.time, rig_.camera->width, config_.keyframes)) {
     if (std::ssize(keyframes_) >= config_.keyframes.most) drop_keyframe(expendable(tracks, keyframes_));
     keep(std::move(*look), image.time, posterior);
@@ -134,7 +134,8 @@ ImageObservations Vision::observe(const Features& features, const Tracks& tracks
 }
 
 /// Stage II of the paper's sequential filter; an image whose innovation contradicts the prior is not believed at all.
-Estimate Vision::update(const Estimate& prior, const ImageObservations& observations, ImageFacts& facts) {
+Estimate Vision::update(const Estimate& prior, const std::optional<StateDirections>& open,
+                        const ImageObservations& observations, ImageFacts& facts) {
   const Eigen::MatrixXd covariance = joint_covariance(prior, clones_);
   Rig rig = rig_;
   const auto linearize = [&](const NavState& state, std::span<const SE3> poses) {
@@ -142,7 +143,7 @@ Estimate Vision::update(const Estimate& prior, const ImageObservations& observat
     return linearize_image(state, poses.subspan(1), observations, rig, config_.residuals, covariance,
                            CameraPose::unknown);
   };
-  JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{});
+  JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{}, open);
   facts.candidates = result.last.candidates;
   facts.inliers = result.last.inliers;
   if (facts.inliers < config_.least_inliers) return prior;

@@ -30,8 +30,12 @@ class Vision {
   void carry(const Matrix18& J_now_before) { pllit::carry(clones_, J_now_before); }
   /// LiDAR points in I at `time`: where features will find their depth.
   void add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time);
-  /// The state after this image; `prior` where it is of no use. Errors are the extractor's.
-  Expected<Estimate> refine(const CameraFrame& image, const Estimate& prior, ImageFacts& facts, StageClock& clock);
+  /// The state after this image; `prior` where it is of no use. `open`: directions that the scan has left open; nothing
+  /// without a scan. Where the scan knows the pose to millimetres, what a camera adds is mostly the error of its
+  /// calibration, so it moves the state along those only; its own pose on the rig it refines always. Errors are the
+  /// extractor's.
+  Expected<Estimate> refine(const CameraFrame& image, const Estimate& prior, const std::optional<StateDirections>& open,
+                            ImageFacts& facts, StageClock& clock);
   /// Forgets what was built on poses that are not to be trusted any more.
   void restart();
 
@@ -51,7 +55,8 @@ class Vision {
   };
   Expected<Look> look(const CameraFrame& image) const;
   ImageObservations observe(const Features& features, const Tracks& tracks) const;
-  Estimate update(const Estimate& prior, const ImageObservations& observations, ImageFacts& facts);
+  Estimate update(const Estimate& prior, const std::optional<StateDirections>& open,
+                  const ImageObservations& observations, ImageFacts& facts);
   void keep(Look look, Time time, const Estimate& posterior);
   bool is_calibrated(const Look& look) const;
   void drop_keyframe(std::size_t index);

@@ -28,15 +28,19 @@ void turn(MatrixXd& joint, Index begin, const Matrix3d& J_new_old) {
   joint.middleCols<3>(begin) = (joint.middleCols<3>(begin) * J_new_old.transpose()).eval();
 }
 
-/// Covariance after a gain that only the first `gaining` errors get (Joseph's form). `optimal` is the covariance after
-/// the full gain.
-MatrixXd after_gain(const MatrixXd& prior, const MatrixXd& optimal, const MatrixXd& H, Index gaining) {
-  const MatrixXd gain = (optimal * H).topRows(gaining);  // K J
+/// Covariance after a gain K = `gain` H' R^-1 of the first rows (Joseph's form).
+MatrixXd after_gain(const MatrixXd& prior, const MatrixXd& gain, const MatrixXd& H) {
+  const MatrixXd gain_H = gain * H;
   MatrixXd kept = MatrixXd::Identity(prior.rows(), prior.cols());
-  kept.topRows(gaining) -= gain;
+  kept.topRows(gain.rows()) -= gain_H;
   MatrixXd posterior = kept * prior * kept.transpose();
-  posterior.topLeftCorner(gaining, gaining) += gain * optimal.leftCols(gaining);
+  posterior.topLeftCorner(gain.rows(), gain.rows()) += gain_H * gain.transpose();
   return posterior;
+}
+
+/// The part of the state's rows that lies along the directions.
+void keep_along(const std::optional<StateDirections>& along, MatrixXd& rows) {
+  if (along) rows.topRows<ix::size>() = (*along * (along->transpose() * rows.topRows<ix::size>())).eval();
 }
 
 /// The state and the unknown poses together, as one point on their manifold.
@@ -113,7 +117,7 @@ MatrixXd joint_covariance(const Estimate& estimate, const Clones& clones) {
 }
 
 JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const LinearizeJoint& linearize,
-                            const FilterConfig& config) {
+                            const FilterConfig& config, const std::optional<StateDirections>& along) {
   JointUpdate result{.posterior = prior, .clones = clones};
   const MatrixXd joint_prior = joint_covariance(prior, clones);
   const Unknowns before{prior.mean, clones.poses, clones.estimated};
@@ -134,8 +138,11 @@ JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const L
     }
     // (P^-1 + H) dx = b - P^-1 d, multiplied by P from the left so that P need not be inverted.
     const Eigen::PartialPivLU<MatrixXd> system(MatrixXd::Identity(P.rows(), P.cols()) + P * result.last.H);
-    const VectorXd step = system.solve(P * result.last.b - d);
-    joint = after_gain(P, system.solve(P), result.last.H, x.size());
+    MatrixXd moved = system.solve(P * result.last.b - d) + d, gain = system.solve(P).topRows(x.size());
+    keep_along(along, moved);
+    keep_along(along, gain);
+    const VectorXd step = moved.col(0) - d;
+    joint = after_gain(P, gain, result.last.H);
     x.move(step);
     for (const Index begin : x.turns()) turn(joint, begin, right_jacobian(step.segment<3>(begin)));
     result.converged = step.segment<3>(ix::theta).norm() < config.rotation_tolerance_rad &&

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,9 @@ struct JointUpdate {
 
 /// As iterated_update, for measurements that relate the state to earlier poses: the gain is the one of the joint problem
 /// and is given to the state and the unknown poses. Measurements whose cost the steps do not lower return the prior.
+/// `along`: orthonormal columns; then the state's gain is kept to them, whatever the sensor says of other directions.
+using StateDirections = Eigen::Matrix<double, error_index::size, Eigen::Dynamic>;
 JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const LinearizeJoint& linearize,
-                            const FilterConfig& config);
+                            const FilterConfig& config, const std::optional<StateDirections>& along = std::nullopt);
 
 }  // namespace pllit
