@@ -87,8 +87,7 @@ TEST(FeatureDepths, OnASlantingWallErrByWhatTheyClaim) {
       }
     }
     EXPECT_GT(count, 900) << spacing;
-    EXPECT_LT(squares / count, 1.5) << spacing;
-    EXPECT_GT(squares / count, 0.02) << spacing;  // neighbours average what the claim takes for common
+    EXPECT_LT(squares / count, 1.2) << spacing;  // far less where many neighbours average what may be common to them
     EXPECT_LT(std::abs(sum / count), 0.15) << spacing;
   }
 }
@@ -203,7 +202,8 @@ std::optional<FeatureDepth> naive_depth(const std::vector<Vector3f>& points_C, c
   std::vector<RaysNeighbour> kept;
   float nearest = 1e9F;
   for (const RaysNeighbour& point : all) nearest = std::min(nearest, point.range_m);
-  const float patch = static_cast<float>(config.patch_m) / nearest;
+  const float patch =
+      std::max(static_cast<float>(config.patch_m) / nearest, static_cast<float>(config.clear_deg * M_PI / 180.0));
   for (const RaysNeighbour& point : all)
     if (kept.size() < 5 || point.angle2 <= patch * patch) kept.push_back(point);
   std::ranges::sort(kept, {}, &RaysNeighbour::range_m);

@@ -175,7 +175,10 @@ LineLandmark landmark(const Vector3d& a_W, const Vector3d& b_W) {
 std::optional<LineLandmark> fit_line(std::span<const LineSighting> sightings, const LineFitConfig& config) {
   std::vector<WorldPoint> points = in_world(sightings);
   if (static_cast<int>(points.size()) < config.min_points) return std::nullopt;
-  const int inliers = agree_on_line(points, config);
+  if (agree_on_line(points, config) < config.min_points) return std::nullopt;
+  // The axis of all that agree is better than the pair's, and more agree with it.
+  const Axis first = principal_axis(points);
+  const int inliers = mark_inliers(points, first.centre_W, first.direction, config);
   const double least_inliers =
       std::max<double>(config.min_points, config.min_inliers * static_cast<double>(points.size()));
   if (inliers < least_inliers) return std::nullopt;

@@ -21,7 +21,7 @@ struct LineFitConfig {
   double min_length_m = 0.4;
   double min_linearity = 30.0;   ///< the points' variance along the line over that across it (PCA)
   double max_rms_m = 0.04;       ///< of the points across the line
-  double min_inliers = 0.6;      ///< share of the points that must lie on it
+  double min_inliers = 0.5;      ///< share of the points that must lie on it
   double gate = 3.0;             ///< on it: within as many standard deviations
   double common_sigma_m = 0.01;  ///< error that the points of a sighting share: pose, calibration, blur
 };
