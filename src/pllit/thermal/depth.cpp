@@ -166,6 +166,11 @@ void DepthImage::collect(const Vector3f& ray, Neighbours& neighbours) const {
     const float angle2 = (points_[i] / ranges_[i] - ray).squaredNorm();
     if (angle2 <= reach * reach) neighbours.add({points_[i], ranges_[i], angle2});
   };
+  // A patch of the surface, and what tells whether a nearer one ends close by.
+  const auto wanted_angle = [&] {
+    return std::max(static_cast<float>(config_.clear_deg * kRad),
+                    static_cast<float>(config_.patch_m) / neighbours.nearest_range_m());
+  };
   for (int ring = 0; !neighbours.full(); ++ring) {
     if (ring == 0) visit(row, column);
     for (int i = -ring; i < ring; ++i) {
@@ -176,11 +181,11 @@ void DepthImage::collect(const Vector3f& ray, Neighbours& neighbours) const {
     }
     // What the next rings hold is at least this far from the ray.
     const float beyond = static_cast<float>(ring) * bin_rad_ * least_cos_elevation_;
-    const bool patch_done = neighbours.count() >= Neighbours::least &&
-                            beyond * neighbours.nearest_range_m() > static_cast<float>(config_.patch_m);
-    if (beyond > reach || patch_done) break;
+    const bool enough = neighbours.count() >= Neighbours::least && beyond > wanted_angle();
+    if (beyond > reach || enough) break;
   }
-  neighbours.keep_within(std::pow(static_cast<float>(config_.patch_m) / neighbours.nearest_range_m(), 2.0F));
+  const float wanted = wanted_angle();
+  neighbours.keep_within(wanted * wanted);
 }
 
 std::optional<FeatureDepth> DepthImage::at(const Vector2d& pixel_px) const {

@@ -16,7 +16,8 @@ struct DepthConfig {
   double bin_deg = 0.15;             ///< of the range image; a bin keeps its nearest return
   double reach_deg = 1.5;            ///< neighbours of a feature are at most this far from its ray
   double patch_m = 0.10;             ///< and at most this far across it, as long as that leaves enough of them
-  double edge_deg = 0.3;             ///< a ray may pass beside its neighbours by as much, not farther
+  double edge_deg = 0.3;             ///< a ray may pass beside the points of its surface by as much, not farther
+  double clear_deg = 0.8;            ///< a ray to a surface passes nearer ones by at least as much
   double hiding_deg = 0.6;           ///< a point with nearer ones on opposite sides within this angle is hidden
   double jump_share = 0.05;          ///< ranges that differ by more than this share are different surfaces
   double jump_m = 0.15;              ///< ... and by more than this

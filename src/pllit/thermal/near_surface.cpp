@@ -62,19 +62,16 @@ std::span<RaysNeighbour> split_nearest(std::span<RaysNeighbour>& points, const D
   return nearest;
 }
 
-/// The surface that owns the ray (see the header); empty where that is open.
+/// The surface that owns the ray (see the header); empty where that is open. What lies behind a nearer surface's edge
+/// is not to be told from the edge itself by beams as wide as the gap, and the edge is what images show.
 std::span<RaysNeighbour> owner_of(const Vector3d& ray, std::span<RaysNeighbour> points, const DepthConfig& config) {
-  const double edge = config.edge_deg * kRad;
-  std::span<RaysNeighbour> beside;
   while (!points.empty()) {
     const Surface surface = surface_of(ray, split_nearest(points, config));
     const bool few = surface.points.size() < least_points;
-    if (surface.around && !few) return beside.empty() ? surface.points : std::span<RaysNeighbour>{};
-    if (surface.angle > edge) continue;
-    if (few) return {};  // something thin, right there
-    if (beside.empty()) beside = surface.points;
+    if (!few && (surface.around || surface.angle < config.edge_deg * kRad)) return surface.points;
+    if (surface.angle < config.clear_deg * kRad) return {};
   }
-  return beside;
+  return {};
 }
 
 /// A plane fitted to points, with what is known of it.
@@ -109,14 +106,19 @@ Plane plane_through(std::span<const RaysNeighbour> points, const Keep& keep) {
   return plane;
 }
 
-/// A fit without the points (mixed pixels, small things) that stand off the plane of all.
+/// A fit without the points (mixed pixels, small things) that stand off the plane of the others.
 Plane trimmed_plane(std::span<const RaysNeighbour> points, const DepthConfig& config) {
-  const Plane all = plane_through(points, [](const RaysNeighbour&) { return true; });
-  const double limit = 2.5 * config.range_sigma_m;
-  const Plane kept = plane_through(points, [&](const RaysNeighbour& point) {
-    return std::abs((point.p_C.cast<double>() - all.centre).dot(all.normal())) <= limit;
-  });
-  return kept.points >= static_cast<int>(least_points) ? kept : all;
+  constexpr int rounds = 4;
+  const double limit = 2.0 * config.range_sigma_m;
+  Plane plane = plane_through(points, [](const RaysNeighbour&) { return true; });
+  for (int round = 0; round < rounds; ++round) {
+    const Plane kept = plane_through(points, [&](const RaysNeighbour& point) {
+      return std::abs((point.p_C.cast<double>() - plane.centre).dot(plane.normal())) <= limit;
+    });
+    if (kept.points < static_cast<int>(least_points) || kept.points == plane.points) break;
+    plane = kept;
+  }
+  return plane;
 }
 
 }  // namespace

@@ -14,9 +14,9 @@ struct RaysNeighbour {
 };
 
 /// Range of a unit ray to the plane of the nearest surface that owns it. `by_range`: the points around it by ascending
-/// range; they are reordered. Surfaces are told apart by jumps of range; the nearest one that holds the ray, or ends
-/// beside it where no farther one holds it, is it. Nothing where that stays open, or the plane does not pass
-/// DepthConfig's checks. `focal_px`: for the share of the feature's own error.
+/// range; they are reordered. Surfaces are told apart by jumps of range; the nearest one that lies around the ray, or
+/// ends within edge_deg of it, is it. Nothing where a nearer one ends within clear_deg, or where the plane does not
+/// pass DepthConfig's checks. `focal_px`: for the share of the feature's own error.
 std::optional<FeatureDepth> depth_on_near_surface(const Vector3d& ray, std::span<RaysNeighbour> by_range,
                                                   const DepthConfig& config, double focal_px);
 

@@ -1,0 +1,49 @@
+#include "pllit/slam/line_tracks.hpp"
+
+#include <cassert>
+
+namespace pllit {
+
+/// The track of each line: that of the newest keyframe's line that it was matched with.
+LineTracks::PerLine LineTracks::tracks_of(const Features& now, const Tracks& tracks) const {
+  PerLine ids(now.lines.size());
+  std::vector<std::size_t> from(now.lines.size(), 0);
+  for (const LineMatch& match : tracks.lines) {
+    assert(match.keyframe < keyframes_.size());
+    const auto current = static_cast<std::size_t>(match.current);
+    const auto& id = keyframes_[match.keyframe][static_cast<std::size_t>(match.reference)];
+    if (!id || (ids[current] && from[current] > match.keyframe)) continue;
+    ids[current] = id;
+    from[current] = match.keyframe;
+  }
+  return ids;
+}
+
+std::vector<LineObservation> LineTracks::observed(const Features& now, const Tracks& tracks) const {
+  std::vector<LineObservation> observations;
+  const PerLine ids = tracks_of(now, tracks);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (!ids[i]) continue;
+    if (const auto line = map_.line_of(*ids[i]))
+      observations.push_back({.line = *line,
+                              .start_px = now.lines[i].start_px.cast<double>(),
+                              .end_px = now.lines[i].end_px.cast<double>()});
+  }
+  return observations;
+}
+
+void LineTracks::add(const Features& now, const Tracks& tracks, const DepthImage& depths, const SE3& T_W_C,
+                     const Camera& camera) {
+  now_ = tracks_of(now, tracks);
+  for (std::size_t i = 0; i < now_.size(); ++i)
+    now_[i] = map_.observe(now_[i], {.T_W_C = T_W_C, .points = points_along(now.lines[i], depths, camera)});
+  map_.end_image(T_W_C.translation());
+}
+
+void LineTracks::restart() {
+  map_.clear();
+  keyframes_.clear();
+  now_.clear();
+}
+
+}  // namespace pllit
