@@ -33,12 +33,12 @@ double apart(const Keyframe& a, const Keyframe& b) { return (a.T_W_C.inverse() *
 
 }  // namespace
 
-Features strongest(const Features& features, std::size_t most) {
-  if (features.points_px.size() <= most) return features;
-  const auto count = static_cast<std::ptrdiff_t>(most);
+Features strongest(const Features& features, int most) {
+  if (std::ssize(features.points_px) <= most) return features;
+  const std::ptrdiff_t count = most;
   return {.points_px = {features.points_px.begin(), features.points_px.begin() + count},
           .scores = {features.scores.begin(), features.scores.begin() + count},
-          .descriptors = features.descriptors.rowRange(0, static_cast<int>(most)).clone(),
+          .descriptors = features.descriptors.rowRange(0, most).clone(),
           .lines = features.lines};
 }
 

@@ -23,7 +23,7 @@ struct KeyframeConfig {
 
 /// The best points, at most `most`, with all lines: what a keyframe keeps. Images are searched for more points than
 /// that, so that a keyframe's points are among them.
-Features strongest(const Features& features, std::size_t most);
+Features strongest(const Features& features, int most);
 
 /// Whether the image now should become a keyframe. `tracks` were matched with `window`, whose last is the newest. An
 /// empty window wants any image that has points. width_px: the image's.

@@ -38,7 +38,7 @@ struct PhotometricConfig {
   double least_gain = 0.2, most_gain = 5.0;
   int dark = 3, bright = 252;    ///< raw greys beyond these are clipped and tell nothing
   int curve_pairs = 60;          ///< a polyline needs as many
-  double least_bend_grey = 1.0;  ///< and must differ from the line by this somewhere between its outer knots, and
+  double least_bend_grey = 3.0;  ///< and must differ from the line by this somewhere between its outer knots, and
   double bend_sigmas = 6.0;      ///< by so many times its own standard deviation
 };
 

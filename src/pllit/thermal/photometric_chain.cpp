@@ -98,9 +98,10 @@ cv::Mat greys_around(const cv::Mat& image, std::span<const Eigen::Vector2f> poin
 }
 
 void set_greys(Keyframe& keyframe, const cv::Mat& around, const GreyCurve& curve) {
-  keyframe.greys_around = around.clone();
+  const int points = static_cast<int>(keyframe.features.points_px.size());
+  keyframe.greys_around = around.rowRange(0, points).clone();
   keyframe.greys.clear();
-  for (int i = 0; i < around.rows; ++i) {
+  for (int i = 0; i < points; ++i) {
     auto* row = keyframe.greys_around.ptr<float>(i);
     for (int k = 0; k < kPlaces; ++k) row[k] = static_cast<float>(curve(static_cast<double>(row[k])));
     keyframe.greys.push_back(row[0]);
