@@ -319,8 +319,8 @@ int main(int argc, char** argv) {
     variant("distance 0.85", 1000, 10, 3, 0.9, 0.85, 5, 1.0, 0.03);
     variant("blur 1.5", 1000, 10, 3, 0.9, 1.0, 5, 1.5, 0.03);
   }
-  // Tuned over contrast limit, window, levels and the backward check's limit on seed 901: a small window is best under steady
-  // gain control, a large one where it jumps.
+  // Tuned over contrast limit, window, levels and the backward check's limit on seed 901: a small window is best under
+  // steady gain control, a large one where it jumps.
   std::vector<std::pair<std::string, KltConfig>> klts{{"GFTT + CLAHE + KLT, 15 px", {.window = 15, .back_px = 0.5}},
                                                       {"GFTT + CLAHE + KLT, 31 px", {.window = 31, .back_px = 1.5}}};
   std::map<Video, Scores> drives, walks;
@@ -347,6 +347,7 @@ int main(int argc, char** argv) {
     report(std::format("drives, {}", kVideoNames[static_cast<std::size_t>(kind)]), drives[kind]);
     report(std::format("walks, {}", kVideoNames[static_cast<std::size_t>(kind)]), walks[kind]);
   }
-  std::printf("matching with one keyframe: %.2f ms of processor time\n", 1e3 * timing.seconds / std::max(timing.calls, 1));
+  std::printf("matching with one keyframe: %.2f ms of processor time\n",
+              1e3 * timing.seconds / std::max(timing.calls, 1));
   return 0;
 }

@@ -17,8 +17,8 @@ namespace pllit {
 /// to clipped pixels they are NaN, as is all outside the image. image: CV_8UC1 or CV_16UC1.
 cv::Mat greys_around(const cv::Mat& image, std::span<const Eigen::Vector2f> points_px);
 
-/// Puts the greys of its image into a keyframe, through the image's curve. around: greys_around() the image's points, of
-/// which the keyframe's are the first.
+/// Puts the greys of its image into a keyframe, through the image's curve. around: greys_around() the image's points,
+/// of which the keyframe's are the first.
 void set_greys(Keyframe& keyframe, const cv::Mat& around, const GreyCurve& curve);
 
 /// The greys that matches tell of: calibrated in their keyframe, raw in the image now. At most `most`, evenly over the
