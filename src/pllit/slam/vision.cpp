@@ -168,7 +168,7 @@ Estimate Vision::update(const Estimate& prior, const std::optional<StateDirectio
 
 void Vision::keep(Look look, Time time, const Estimate& posterior) {
   Keyframe keyframe{.id = next_id_++, .time = time, .T_W_C = posterior.mean.T_W_I() * T_I_C()};
-  keyframe.features = std::move(look.features);
+  keyframe.features = strongest(look.features, config_.keyframes.most_points);
   std::vector<Vector3f> points_W;
   for (const SeenPoints& seen : points_) points_W.insert(points_W.end(), seen.points_W.begin(), seen.points_W.end());
   const DepthImage depth(points_W, keyframe.T_W_C.inverse(), *rig_.camera, config_.depth);

@@ -8,7 +8,7 @@
 namespace pllit {
 
 struct ClassicalConfig {
-  int most_points = 500;
+  int most_points = 1000;
   double most_radius_px = 10.0;  ///< points keep at least so far apart where there are enough of them
   CornerConfig corners{};
   LineConfig lines{};

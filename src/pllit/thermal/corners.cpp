@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <opencv2/imgproc.hpp>
 
 namespace pllit {
@@ -70,10 +72,28 @@ std::vector<Corner> thinned(const std::vector<Corner>& corners, float radius, st
 
 }  // namespace
 
+double noise_grey(const cv::Mat& grey) {
+  std::vector<int> responses;
+  for (int row = 1; row + 1 < grey.rows; row += 3) {
+    const auto *above = grey.ptr<std::uint8_t>(row - 1), *here = grey.ptr<std::uint8_t>(row),
+               *below = grey.ptr<std::uint8_t>(row + 1);
+    for (int column = 1; column + 1 < grey.cols; column += 3) {
+      const auto across = [column](const std::uint8_t* p) { return p[column - 1] - 2 * p[column] + p[column + 1]; };
+      responses.push_back(std::abs(across(above) - 2 * across(here) + across(below)));
+    }
+  }
+  if (responses.empty()) return 0.3;
+  const auto middle = responses.begin() + static_cast<std::ptrdiff_t>(responses.size() / 2);
+  std::ranges::nth_element(responses, middle);
+  constexpr double kMedian = 0.6745, kMask = 6.0, kRounding = 0.29;
+  return std::max(*middle / (kMedian * kMask), kRounding);
+}
+
 cv::Mat contrast_normalised(const cv::Mat& grey, const CornerConfig& config) {
   cv::Mat image, mean, squares, spread;
   grey.convertTo(image, CV_32F);
   cv::GaussianBlur(image, image, {}, config.blur_px);
+  const auto floor = static_cast<float>(config.noise_floors * noise_grey(grey));
   const cv::Size window(config.contrast_window_px, config.contrast_window_px);
   cv::boxFilter(image, mean, CV_32F, window, {-1, -1}, true, cv::BORDER_REFLECT);
   cv::sqrBoxFilter(image, squares, CV_32F, window, {-1, -1}, true, cv::BORDER_REFLECT);
@@ -82,7 +102,7 @@ cv::Mat contrast_normalised(const cv::Mat& grey, const CornerConfig& config) {
     const auto *m = mean.ptr<float>(row), *s = squares.ptr<float>(row);
     for (int column = 0; column < image.cols; ++column) {
       const float deviation = std::sqrt(std::max(s[column] - m[column] * m[column], 0.0F));
-      value[column] = (value[column] - m[column]) / (deviation + static_cast<float>(config.contrast_floor));
+      value[column] = (value[column] - m[column]) / (deviation + floor);
     }
   }
   return image;

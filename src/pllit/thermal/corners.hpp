@@ -13,13 +13,17 @@ struct Corner {
 };
 
 struct CornerConfig {
-  double blur_px = 1.0;          ///< sigma, against the sensor's noise
-  int contrast_window_px = 33;   ///< side of the square whose contrast is divided out
-  double contrast_floor = 3.0;   ///< grey: contrast of this order is noise
-  int window_px = 5;             ///< side of the square over which gradients are summed
-  double least_strength = 2e-4;  ///< squared normalised contrast a pixel
-  int margin_px = 6;             ///< nothing nearer to the image's border
+  double blur_px = 1.0;           ///< sigma, against the sensor's noise
+  int contrast_window_px = 33;    ///< side of the square whose contrast is divided out
+  double noise_floors = 4.0;      ///< contrast of so many times the image's noise counts as none
+  int window_px = 5;              ///< side of the square over which gradients are summed
+  double least_strength = 0.03;  ///< squared normalised contrast a pixel
+  int margin_px = 6;              ///< nothing nearer to the image's border
 };
+
+/// Standard deviation of an image's white noise, grey levels, by the median response to a mask that leaves out planes
+/// (Immerkaer 1996); at least what rounding makes. grey: CV_8UC1.
+double noise_grey(const cv::Mat& grey);
 
 /// Grey less the mean around it, over the standard deviation around it plus the floor; CV_32FC1 of a CV_8UC1 image.
 /// What an affine change of the greys does to it is small where the contrast is well above the floor.

@@ -33,6 +33,15 @@ double apart(const Keyframe& a, const Keyframe& b) { return (a.T_W_C.inverse() *
 
 }  // namespace
 
+Features strongest(const Features& features, int most) {
+  if (std::ssize(features.points_px) <= most) return features;
+  const std::ptrdiff_t count = most;
+  return {.points_px = {features.points_px.begin(), features.points_px.begin() + count},
+          .scores = {features.scores.begin(), features.scores.begin() + count},
+          .descriptors = features.descriptors.rowRange(0, most).clone(),
+          .lines = features.lines};
+}
+
 bool wants_keyframe(const Tracks& tracks, std::span<const Keyframe> window, const Features& now, Time time,
                     int width_px, const KeyframeConfig& config) {
   if (now.points_px.empty()) return false;

@@ -9,7 +9,8 @@
 namespace pllit {
 
 struct KeyframeConfig {
-  int most = 8;  ///< keyframes in a window
+  int most_points = 400;  ///< that a keyframe keeps
+  int most = 8;           ///< keyframes in a window
   /// With fewer matches with the last keyframe than both this share of its points and this number, the image becomes
   /// one.
   double least_share = 0.55;
@@ -19,6 +20,10 @@ struct KeyframeConfig {
   double least_s = 0.1;    ///< between two keyframes
   double still_px = 2.0;   ///< median motion below which the rig counts as still
 };
+
+/// The best points, at most `most`, with all lines: what a keyframe keeps. Images are searched for more points than
+/// that, so that a keyframe's points are among them.
+Features strongest(const Features& features, int most);
 
 /// Whether the image now should become a keyframe. `tracks` were matched with `window`, whose last is the newest. An
 /// empty window wants any image that has points. width_px: the image's.

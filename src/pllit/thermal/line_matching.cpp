@@ -119,6 +119,16 @@ Eigen::MatrixXi shared_points(const PointsOnLines& reference, const PointsOnLine
   return shared;
 }
 
+/// How many points on each line are matched at all, in one of the two images.
+std::vector<int> matched_points(const PointsOnLines& on_lines, const std::vector<PointMatch>& points,
+                                int PointMatch::* side) {
+  std::vector<int> matched;
+  for (const std::vector<int>& on_line : on_lines)
+    matched.push_back(static_cast<int>(std::ranges::count_if(
+        points, [&](const PointMatch& match) { return std::ranges::binary_search(on_line, match.*side); })));
+  return matched;
+}
+
 }  // namespace
 
 float distance_on_line(const Vector2f& point_px, const LineSegment& line, float beyond_px) {
@@ -147,6 +157,8 @@ std::vector<LineMatch> match_lines(const Keyframe& keyframe, const Features& now
   const std::vector<LineSegment>& lines = keyframe.features.lines;
   const PointsOnLines on_lines = points_on_lines(keyframe.features, config);
   const Eigen::MatrixXi shared = shared_points(on_lines, on_lines_now, points, keyframe.features.points_px.size());
+  const std::vector<int> matched_before = matched_points(on_lines, points, &PointMatch::reference),
+                         matched_now = matched_points(on_lines_now, points, &PointMatch::current);
   std::vector<std::optional<LineSegment>> expected;
   for (const LineSegment& line : lines) expected.push_back(predicted(keyframe, line, T_C_K, camera, config));
 
@@ -157,8 +169,7 @@ std::vector<LineMatch> match_lines(const Keyframe& keyframe, const Features& now
       if (expected[row])
         if (const float alike = likeness(*expected[row], now.lines[column], config); alike > 0.0F)
           by_place.offer(i, k, alike);
-      const int count = shared(i, k),
-                fewer = static_cast<int>(std::min(on_lines[row].size(), on_lines_now[column].size()));
+      const int count = shared(i, k), fewer = std::min(matched_before[row], matched_now[column]);
       if (count < config.least_shared || count * count < config.least_share * fewer) continue;
       if (expected[row] && angle_between(*expected[row], now.lines[column]) > config.turned_deg * kDegree) continue;
       by_points.offer(i, k, static_cast<float>(count));

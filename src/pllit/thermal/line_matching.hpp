@@ -9,10 +9,11 @@
 namespace pllit {
 
 struct LineMatchConfig {
-  double on_line_px = 3.0;   ///< the paper's delta_line: how far off a line a point may be
-  int least_shared = 2;      ///< matched points on both
-  double least_share = 0.8;  ///< shared points squared over the fewer points of either line (AirSLAM's rule)
-  double turned_deg = 15.0;  ///< lines that share points may differ so much from the predicted direction
+  double on_line_px = 3.0;  ///< the paper's delta_line: how far off a line a point may be
+  int least_shared = 2;     ///< matched points on both
+  /// Shared points squared over the fewer matched points of either line (after AirSLAM's rule).
+  double least_share = 0.8;
+  double turned_deg = 15.0;                ///< lines that share points may differ so much from the predicted direction
   double alike_deg = 4.0, alike_px = 5.0;  ///< lines that share too few points: from the predicted line, whose
   double least_overlap = 0.5;              ///< part, of the shorter one, that lies side by side is at least this
   double depth_near_px = 10.0;             ///< points this near to a line tell its depth

@@ -10,17 +10,18 @@
 namespace pllit {
 
 struct MatchConfig {
-  double window_px = 16.0;      ///< how far from the predicted pixel a point is looked for
-  double gate_px = 5.0;         ///< how far from there once the whole image's shift against the prediction is known
-  double nearest_m = 1.0;       ///< a point whose depth is not known lies between this and infinity
-  double most_distance = 0.85;  ///< of unit descriptors
-  double ratio = 0.9;           ///< of the best distance to the second best in the window, at most
+  double window_px = 16.0;     ///< how far from the predicted pixel a point is looked for
+  double gate_px = 3.0;        ///< how far from where the pose puts it that most matches agree on
+  double nearest_m = 1.0;      ///< a point whose depth is not known lies between this and infinity
+  double most_distance = 1.0;  ///< of unit descriptors
+  double ratio = 0.9;          ///< of the best distance to the second best in the window, at most
+  double twin_px = 6.0;        ///< points nearer to the best one look like it and are no second best
   LineMatchConfig lines{};
 };
 
 /// Matches by descriptor around where the poses predict each keyframe's points: points with depth near their
 /// projection, others near the epipolar line's part for their possible depths. Matches are the best for both points,
-/// pass the ratio test, and agree with the other matches of the keyframe in how far they are off the prediction. Lines
+/// pass the ratio test, and agree with the other matches of the keyframe on a pose near the predicted one. Lines
 /// are matched through the points, and points that lie on matched lines in both images marked (the paper's
 /// structure-anchored points). T_W_C_now: predicted. The keyframes' T_W_C: as estimated now.
 Tracks match_to_keyframes(const Features& now, const SE3& T_W_C_now, std::span<const Keyframe> window,

@@ -59,21 +59,34 @@ double spread_of_raw(std::span<const GreyPair> pairs) {
 
 /// Sums of one round over the pairs, with the weights that the last curve gives them.
 struct WeightedSums {
-  double weights = 0.0, raw = 0.0, raw_raw = 0.0, reference = 0.0, raw_reference = 0.0, squares = 0.0;
+  double weights = 0.0, raw = 0.0, raw_raw = 0.0, reference = 0.0, reference_reference = 0.0, raw_reference = 0.0;
 };
 
 WeightedSums sums_of(std::span<const GreyPair> pairs, const GreyCurve& last, double width) {
   WeightedSums s;
   for (const GreyPair& pair : pairs) {
-    const double r = pair.reference - last(pair.current), w = tukey_weight(r, width);
+    const double w = tukey_weight(pair.reference - last(pair.current), width);
     s.weights += w;
     s.raw += w * pair.current;
     s.raw_raw += w * pair.current * pair.current;
     s.reference += w * pair.reference;
+    s.reference_reference += w * pair.reference * pair.reference;
     s.raw_reference += w * pair.current * pair.reference;
-    s.squares += w * r * r;
   }
   return s;
+}
+
+/// The slope of the least squares in the reference alone would be too small by the noise of the current greys, a little
+/// with every keyframe. Both images see one scene from almost the same place, so their noise is alike by its share of
+/// the contrast; then the ratio of the standard deviations is the slope (the reduced major axis: Kermack and Haldane
+/// 1950).
+double slope_of(const WeightedSums& s) {
+  const double raw_variance = s.raw_raw - s.raw * s.raw / s.weights,
+               reference_variance = s.reference_reference - s.reference * s.reference / s.weights,
+               covariance = s.raw_reference - s.raw * s.reference / s.weights;
+  if (raw_variance <= 0.0 || covariance <= 0.0) return 0.0;
+  const double plain = covariance / raw_variance, correlation2 = covariance * plain / reference_variance;
+  return correlation2 > 0.5 ? std::sqrt(reference_variance / raw_variance) : plain;
 }
 
 /// One round of the reweighted least squares in gain and bias.
@@ -81,24 +94,9 @@ GreyCurve affine_round(std::span<const GreyPair> pairs, const GreyCurve& last, d
                        const PhotometricConfig& config) {
   const WeightedSums s = sums_of(pairs, last, width);
   if (s.weights <= 0.0) return last;
-  double raw_raw = s.raw_raw;
-  const double variance = s.raw_raw / s.weights - std::pow(s.raw / s.weights, 2);
-  // Greys of both images are noisy: noise in the current ones would flatten the line, a little with every keyframe.
-  if (width <= config.loss_grey)
-    raw_raw -= std::min(s.squares / (1.0 + last.gain * last.gain), 0.2 * variance * s.weights);
-  const double lambda_1 = config.leak * variance * s.weights, lambda_2 = config.leak * s.weights;
-  Eigen::Matrix2d A;
-  A << raw_raw + lambda_1, s.raw, s.raw, s.weights + lambda_2;
-  const Eigen::Vector2d b(s.raw_reference + lambda_1, s.reference);
   GreyCurve curve;
-  if (gain_too) {
-    const Eigen::Vector2d x = A.ldlt().solve(b);
-    curve.gain = x[0];
-    curve.bias = x[1];
-  } else {
-    curve.gain = last.gain;
-    curve.bias = (b[1] - A(1, 0) * last.gain) / A(1, 1);
-  }
+  curve.gain = gain_too ? (slope_of(s) + config.leak) / (1.0 + config.leak) : last.gain;
+  curve.bias = (s.reference - curve.gain * s.raw) / (s.weights * (1.0 + config.leak));
   return curve;
 }
 
@@ -145,7 +143,7 @@ GreyCurve best_affine(std::span<const GreyPair> pairs, const GreyCurve& before, 
 
 /// Knots where the greys are: at even shares of the inliers.
 std::vector<double> knots_for(std::span<const GreyPair> pairs) {
-  constexpr std::array<double, 5> shares{0.02, 0.25, 0.5, 0.75, 0.98};
+  constexpr std::array<double, 7> shares{0.02, 0.15, 0.32, 0.5, 0.68, 0.85, 0.98};
   std::vector<float> greys;
   for (const GreyPair& pair : pairs) greys.push_back(pair.current);
   std::ranges::sort(greys);
@@ -201,6 +199,17 @@ GreyCurve with_polyline(std::span<const GreyPair> pairs, const GreyCurve& affine
   return curve;
 }
 
+/// Whether the polyline differs from the line by more than its own uncertainty and by enough to matter.
+bool bends(const GreyCurve& affine, const GreyCurve& bent, const Residuals& residuals,
+           const PhotometricConfig& config) {
+  if (bent.knots.empty() || residuals.inliers == 0) return false;
+  double most = 0.0;
+  for (std::size_t i = 0; i < bent.knots.size(); ++i)
+    most = std::max(most, std::abs(bent(bent.knots[i]) - affine(bent.knots[i])));
+  const double pairs_a_knot = residuals.inliers / static_cast<double>(bent.knots.size());
+  return most > std::max(config.least_bend_grey, config.bend_sigmas * residuals.rms_grey / std::sqrt(pairs_a_knot));
+}
+
 }  // namespace
 
 double GreyCurve::operator()(double raw) const {
@@ -245,12 +254,11 @@ PhotometricFit fit_grey_curve(std::span<const GreyPair> pairs, const GreyCurve& 
   if (!gain_too || fit.pairs < config.curve_pairs) return fit;
 
   const GreyCurve bent = with_polyline(usable, affine, config);
-  // Judged without the pairs that neither explains, by a loss wide enough to hold what a line misses.
-  const double width = 2.5 * config.loss_grey;
-  const double affine_cost = robust_cost(usable, affine, width), bent_cost = robust_cost(usable, bent, width);
-  const double false_cost = static_cast<double>(usable.size()) - residuals_of(usable, bent, width).inliers;
-  if (bent_cost - false_cost > config.curve_gain * config.curve_gain * (affine_cost - false_cost)) return fit;
   const Residuals bent_residuals = residuals_of(usable, bent, config.loss_grey);
+  const double width = 2.5 * config.loss_grey;  // wide enough to hold what a line misses
+  if (!bends(affine, bent, bent_residuals, config) ||
+      robust_cost(usable, bent, width) >= robust_cost(usable, affine, width))
+    return fit;
   return {.curve = bent,
           .kind = PhotometricFit::Kind::curve,
           .pairs = fit.pairs,

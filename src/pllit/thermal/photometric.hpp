@@ -31,14 +31,15 @@ struct PhotometricConfig {
   /// The paper's lambda_1 and lambda_2 as a share of what the pairs tell of gain and bias, so that they neither vanish
   /// nor rule with their number. They act on the whole curve, not on its change since the last keyframe: errors that
   /// are handed over from keyframe to keyframe fade within 1/leak of them instead of adding up without bound.
-  double leak = 0.002;
+  double leak = 0.0005;
   double loss_grey = 8.0;        ///< rho: Tukey's biweight of this width, which is narrowed to from 60
   int min_pairs = 12;            ///< fewer tell nothing
   double min_spread_grey = 8.0;  ///< standard deviation of the raw greys below which only the bias is found
   double least_gain = 0.2, most_gain = 5.0;
-  int dark = 2, bright = 253;  ///< raw greys beyond these are clipped and tell nothing
-  int curve_pairs = 60;        ///< a polyline needs as many
-  double curve_gain = 0.75;    ///< and must lower the residuals' rms to this share
+  int dark = 3, bright = 252;    ///< raw greys beyond these are clipped and tell nothing
+  int curve_pairs = 60;          ///< a polyline needs as many
+  double least_bend_grey = 3.0;  ///< and must differ from the line by this somewhere between its outer knots, and
+  double bend_sigmas = 6.0;      ///< by so many times its own standard deviation
 };
 
 struct PhotometricFit {
@@ -56,7 +57,7 @@ struct PhotometricFit {
 };
 
 /// Minimises sum rho(r_k) + lambda_1 (gain - 1)^2 + lambda_2 bias^2 with r_k = reference - (gain current + bias), the
-/// paper's problem in its two effective unknowns, in which it is linear, by reweighted least squares with a loss that
+/// paper's problem in its two effective unknowns, in which it is linear, by reweighted sums with a loss that
 /// is narrowed from round to round (graduated non-convexity: Blake and Zisserman 1987), so that a jump of the gain
 /// control is followed and false matches are not. Where the residuals show that an affine curve cannot follow (plateau
 /// equalisation), a polyline of few knots is added. `before`: the last frame's curve.

@@ -34,6 +34,33 @@ float bilinear(const cv::Mat& image, const Eigen::Vector2f& at) {
   return std::lerp(std::lerp(upper[0], upper[1], u), std::lerp(lower[0], lower[1], u), v);
 }
 
+cv::Mat smoothed(const cv::Mat& image) {
+  cv::Mat smooth;
+  image.convertTo(smooth, CV_32F);
+  cv::GaussianBlur(smooth, smooth, {5, 5}, 1.0, 1.0, cv::BORDER_REPLICATE);
+  return smooth;
+}
+
+/// The smooth image with NaN near clipped pixels and on steep edges, where a fraction of a pixel changes the grey.
+cv::Mat tellable(const cv::Mat& image, const cv::Mat& smooth) {
+  cv::Mat clipped, dx, dy, slope;
+  cv::Sobel(smooth, dx, CV_32F, 1, 0, 3, 0.125);
+  cv::Sobel(smooth, dy, CV_32F, 0, 1, 3, 0.125);
+  cv::magnitude(dx, dy, slope);
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(smooth, mean, deviation);
+  constexpr double kSteep = 0.12;  // standard deviations of the image a pixel
+  cv::Mat useless = slope > kSteep * deviation[0];
+  if (image.depth() == CV_8U) {
+    cv::inRange(image, cv::Scalar(2), cv::Scalar(253), clipped);  // 0 where clipped
+    cv::erode(clipped, clipped, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));
+    useless |= clipped == 0;
+  }
+  cv::Mat telling = smooth.clone();
+  telling.setTo(std::numeric_limits<float>::quiet_NaN(), useless);
+  return telling;
+}
+
 /// Raw greys at even shares of the image's pixels, ascending.
 std::array<double, kQuantiles> quantiles_of(const cv::Mat& grey) {
   std::array<std::uint32_t, 256> histogram{};
@@ -60,22 +87,21 @@ cv::Mat calibrated_quantiles(const cv::Mat& grey, const GreyCurve& curve) {
 }  // namespace
 
 cv::Mat greys_around(const cv::Mat& image, std::span<const Eigen::Vector2f> points_px) {
-  cv::Mat smooth;
-  image.convertTo(smooth, CV_32F);
-  cv::GaussianBlur(smooth, smooth, {5, 5}, 1.0, 1.0, cv::BORDER_REPLICATE);
+  const cv::Mat smooth = smoothed(image), telling = tellable(image, smooth);
   const auto offsets = places();
   cv::Mat greys(static_cast<int>(points_px.size()), kPlaces, CV_32FC1);
   for (int i = 0; i < greys.rows; ++i)
     for (int k = 0; k < kPlaces; ++k)
-      greys.at<float>(i, k) =
-          bilinear(smooth, points_px[static_cast<std::size_t>(i)] + offsets[static_cast<std::size_t>(k)]);
+      greys.at<float>(i, k) = bilinear(k == 0 ? smooth : telling,
+                                       points_px[static_cast<std::size_t>(i)] + offsets[static_cast<std::size_t>(k)]);
   return greys;
 }
 
 void set_greys(Keyframe& keyframe, const cv::Mat& around, const GreyCurve& curve) {
-  keyframe.greys_around = around.clone();
+  const int points = static_cast<int>(keyframe.features.points_px.size());
+  keyframe.greys_around = around.rowRange(0, points).clone();
   keyframe.greys.clear();
-  for (int i = 0; i < around.rows; ++i) {
+  for (int i = 0; i < points; ++i) {
     auto* row = keyframe.greys_around.ptr<float>(i);
     for (int k = 0; k < kPlaces; ++k) row[k] = static_cast<float>(curve(static_cast<double>(row[k])));
     keyframe.greys.push_back(row[0]);

@@ -11,13 +11,14 @@
 
 namespace pllit {
 
-/// Raw greys (or counts) at each point and at eight places 6 px around it, a row a point, CV_32FC1: from an image that
-/// is slightly blurred, between pixels bilinearly, outside the image NaN. The places around are there because points
-/// lie on edges, where a fraction of a pixel moves the grey most, and because a curve needs the greys on both sides.
-/// image: CV_8UC1 or CV_16UC1.
+/// Raw greys (or counts) at each point and at eight places 6 px around it, a row a point, CV_32FC1: between pixels
+/// bilinearly, from an image that is slightly blurred. The places around are there because points lie on edges, where a
+/// fraction of a pixel moves the grey most, and because a curve needs the greys on both sides; on steep edges and next
+/// to clipped pixels they are NaN, as is all outside the image. image: CV_8UC1 or CV_16UC1.
 cv::Mat greys_around(const cv::Mat& image, std::span<const Eigen::Vector2f> points_px);
 
-/// Puts the greys of its image into a keyframe, through the image's curve. around: its greys_around().
+/// Puts the greys of its image into a keyframe, through the image's curve. around: greys_around() the image's points,
+/// of which the keyframe's are the first.
 void set_greys(Keyframe& keyframe, const cv::Mat& around, const GreyCurve& curve);
 
 /// The greys that matches tell of: calibrated in their keyframe, raw in the image now. At most `most`, evenly over the
