@@ -16,8 +16,8 @@ struct NetworkConfig {
   std::filesystem::path model;
   std::string provider = "cpu";  ///< "cpu", "cuda" or "tensorrt", where the installed ONNX Runtime has it
   int threads = 2;               ///< that one image is shared among; belongs to this extractor alone
-  PointDecoding points;
-  LineDecoding lines;
+  PointDecoding points = {};
+  LineDecoding lines = {};
 };
 
 /// Pads images at their right and lower borders to the multiple of 16 pixels that the network needs, so any size will do.
