@@ -1,14 +1,22 @@
 """Writes a checkpoint as ONNX, opset 17: python3 models/export.py CHECKPOINT OUT.onnx"""
+import os
 import sys
 
 import torch
 
 from pl_net import Exported, PlNet
 
-sys.modules["onnx"] = None  # the exporter only looks for it; loaded beside PyTorch, Debian's prints thousands of warnings
+
+def load_onnx_quietly():
+    """Debian's onnx, loaded beside PyTorch, registers every operator twice and complains of each."""
+    terminal, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    import onnx  # noqa: F401
+    os.dup2(terminal, 2)
 
 
 def main(checkpoint, out):
+    load_onnx_quietly()
     net = PlNet()
     net.load_state_dict(torch.load(checkpoint, weights_only=True)["net"])
     names = ["scores", "descriptors", "lines"]

@@ -3,7 +3,8 @@
 Stages, each kept in FOLDER as it goes; a run that was cut off goes on where it stopped.
   data    drawn scenes, labelled stills of HIT-UAV and of the simulator (see models/README.md)
   shapes  all heads on drawn scenes, whose truth is exact
-  joint   all heads on everything
+  joint   all heads on drawn scenes and stills
+  wider   the same on larger crops
   lines   the line branch alone on thermal images, everything else frozen (the paper's second step)
   export  models/pl_net.onnx
 """
@@ -26,8 +27,9 @@ SEED = 20260
 STAGES = {
     # `schedule`: steps over which the learning rate rises and falls. Crops of `size` px, `pairs` pairs of them a step. Weights of the groups of images: drawn, HIT-UAV, simulated.
     "shapes": dict(steps=241, schedule=600, rate=3e-3, pairs=6, size=192, shapes=1.0),
-    "joint": dict(steps=1000, schedule=1000, rate=3e-3, pairs=4, size=160, shapes=0.35, hit_uav=0.4, simulated=0.25),
-    "lines": dict(steps=300, schedule=300, rate=1.5e-3, pairs=2, size=224, shapes=0.3, hit_uav=0.3, simulated=0.4),
+    "joint": dict(steps=1000, schedule=1000, rate=3e-3, pairs=4, size=160, shapes=0.45, hit_uav=0.55),
+    "wider": dict(steps=500, schedule=500, rate=1.5e-3, pairs=4, size=192, shapes=0.4, hit_uav=0.6),
+    "lines": dict(steps=200, schedule=200, rate=1e-3, pairs=3, size=192, shapes=0.3, hit_uav=0.3, simulated=0.4),
 }
 
 

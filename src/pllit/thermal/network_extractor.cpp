@@ -81,6 +81,11 @@ MapView view_of(const Ort::Value& value) {
           .columns = static_cast<int>(shape[3])};
 }
 
+std::vector<Corner> corners_in(const cv::Mat& grey, const NetworkConfig& config) {
+  return spread_evenly(corners_of(contrast_normalised(grey, config.corners), config.corners), config.points.most,
+                       static_cast<float>(config.points.most_radius_px));
+}
+
 /// The image as floats 0 to 1, its last row and column repeated up to the padded size.
 cv::Mat prepared(const cv::Mat& grey) {
   cv::Mat framed, image;
@@ -110,7 +115,8 @@ std::vector<std::string> installed_providers() {
 NetworkExtractor::NetworkExtractor(NetworkConfig config, std::unique_ptr<Session> session)
     : config_(std::move(config)),
       session_(std::move(session)),
-      name_(std::format("network {} on {}", config_.model.filename().string(), config_.provider)) {}
+      name_(std::format("network {}{} on {}", config_.model.filename().string(),
+                        config_.place_points == NetworkConfig::Points::corners ? " at corners" : "", config_.provider)) {}
 
 NetworkExtractor::~NetworkExtractor() = default;
 
@@ -150,7 +156,9 @@ Expected<Features> NetworkExtractor::extract(const cv::Mat& grey) {
     const std::vector<Ort::Value> maps =
         session_->ort.Run(Ort::RunOptions{nullptr}, &kInput, &input, 1, kOutputs.data(), kOutputs.size());
     const cv::Mat scores(image.rows, image.cols, CV_32FC1, const_cast<float*>(maps[0].GetTensorData<float>()));
-    const std::vector<Corner> points = decode_points(scores, grey.size(), config_.points);
+    const std::vector<Corner> points = config_.place_points == NetworkConfig::Points::corners
+                                           ? corners_in(grey, config_)
+                                           : decode_points(scores, grey.size(), config_.points);
     Features features;
     for (const Corner& point : points) {
       features.points_px.push_back(point.at_px);

@@ -13,11 +13,16 @@
 namespace pllit {
 
 struct NetworkConfig {
+  /// Where points lie: at the network's own key points, or at Shi-Tomasi corners of the contrast-normalised image (corners.hpp).
+  enum class Points { network, corners };
+
   std::filesystem::path model;
   std::string provider = "cpu";  ///< "cpu", "cuda" or "tensorrt", where the installed ONNX Runtime has it
   int threads = 2;               ///< that one image is shared among; belongs to this extractor alone
-  PointDecoding points;
-  LineDecoding lines;
+  Points place_points = Points::network;  ///< descriptors and lines are the network's either way
+  PointDecoding points = {};
+  CornerConfig corners = {};  ///< with Points::corners; how many and how even is said in `points`
+  LineDecoding lines = {};
 };
 
 /// Pads images at their right and lower borders to the multiple of 16 pixels that the network needs, so any size will do.
