@@ -66,7 +66,7 @@ PlaceDescriptor describe(const std::vector<Column>& columns) {
   return descriptor;
 }
 
-Alignment align(const PlaceDescriptor& a, const PlaceDescriptor& b) {
+HeadingMatch align(const PlaceDescriptor& a, const PlaceDescriptor& b) {
   std::array<std::complex<float>, harmonics> product{};
   for (std::size_t r = 0; r < rings; ++r)
     for (std::size_t k = 0; k < harmonics; ++k) {
@@ -80,11 +80,9 @@ Alignment align(const PlaceDescriptor& a, const PlaceDescriptor& b) {
       at[static_cast<std::size_t>(shift)] +=
           (Complex(product[static_cast<std::size_t>(k)]) * root((k + 1) * shift)).real();
   const auto best = static_cast<int>(std::ranges::max_element(at) - at.begin());
+  // The top of the parabola through the best shift and its neighbours.
   const double left = at[static_cast<std::size_t>((best + sectors - 1) % sectors)],
                top = at[static_cast<std::size_t>(best)], right = at[static_cast<std::size_t>((best + 1) % sectors)];
-  // The top of the parabola through the best shift and its neighbours.
-  const double left = correlation(best - 1.0), top = at[static_cast<std::size_t>(best)],
-               right = correlation(best + 1.0);
   const double bend = left - 2.0 * top + right;
   const double offset = bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
   return {top, std::remainder(2.0 * M_PI * (best + offset) / sectors, 2.0 * M_PI)};

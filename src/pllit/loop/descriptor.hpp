@@ -21,12 +21,12 @@ struct PlaceDescriptor {
 
 PlaceDescriptor describe(const std::vector<Column>& columns);
 
-struct Alignment {
+struct HeadingMatch {
   double score = 0.0;    ///< correlation at the best heading, -1 to 1
   double yaw_rad = 0.0;  ///< of b's frame in a's: p_a = Rz(yaw) p_b
 };
 
 /// The best heading of b in a.
-Alignment align(const PlaceDescriptor& a, const PlaceDescriptor& b);
+HeadingMatch align(const PlaceDescriptor& a, const PlaceDescriptor& b);
 
 }  // namespace pllit

@@ -40,7 +40,7 @@ class LoopCloser {
     std::size_t anchor = 0;
     FoundBy found_by = FoundBy::radius;
     double distance_m = 0.0;
-    Alignment alignment{};
+    HeadingMatch alignment{};
   };
 
   void add_to_graph(std::size_t k);
