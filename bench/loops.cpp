@@ -4,10 +4,14 @@
 // the odometry away about the vertical at a steady rate before loops are looked for. --out writes truth.tum,
 // odometry.tum, trajectory.tum and loops.csv. One line of JSON.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <format>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "keyframe_file.hpp"
@@ -17,6 +21,7 @@
 #include "pllit/loop/loop_closer.hpp"
 #include "pllit/sim/sequences.hpp"
 #include "pllit/sim/simulation.hpp"
+#include "pllit/slam/config_presets.hpp"
 #include "pllit/slam/config_yaml.hpp"
 #include "pllit/slam/frame_table.hpp"
 #include "pllit/slam/keyframe_maker.hpp"
@@ -141,8 +146,9 @@ double ape_m(const KeyframeRun& run, const Trajectory& estimate) {
 void write_files(const std::filesystem::path& folder, const KeyframeRun& run, const Trajectory& odometry,
                  const Trajectory& closed, const LoopCloser& closer) {
   std::filesystem::create_directories(folder);
-  for (const auto& [name, trajectory] :
-       {std::pair{"truth.tum", &run.truth}, {"odometry.tum", &odometry}, {"trajectory.tum", &closed}})
+  const std::array<std::pair<const char*, const Trajectory*>, 3> files{
+      {{"truth.tum", &run.truth}, {"odometry.tum", &odometry}, {"trajectory.tum", &closed}}};
+  for (const auto& [name, trajectory] : files)
     if (const auto done = write_tum(folder / name, *trajectory); !done)
       std::fprintf(stderr, "%s\n", done.error().message.c_str());
   std::vector<std::string> columns = loop_columns();
@@ -207,7 +213,9 @@ nlohmann::ordered_json close_loops(const Options& options, const LoopConfig& con
 }
 
 Expected<nlohmann::ordered_json> bench_loops(const Options& options) {
-  const auto config = read_config(options.preset, options.settings);
+  Expected<Config> config = find_config(options.preset);
+  for (const std::string& setting : options.settings)
+    if (config) config = apply_setting(*config, setting);
   if (!config) return std::unexpected(config.error());
   KeyframeRun run;
   if (!options.keep.empty() && std::filesystem::exists(options.keep)) {

@@ -31,7 +31,7 @@ TEST(Descriptor, GivesTheHeadingBetweenTwoViewsOfAPlace) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const auto columns = random_columns(seed, 400);
     const double yaw = std::remainder(0.7 * seed, 2.0 * M_PI);
-    const Alignment alignment = align(describe(moved(columns, yaw, {0.0F, 0.0F})), describe(columns));
+    const HeadingMatch alignment = align(describe(moved(columns, yaw, {0.0F, 0.0F})), describe(columns));
     EXPECT_GT(alignment.score, 0.9);
     EXPECT_NEAR(std::remainder(alignment.yaw_rad - yaw, 2.0 * M_PI), 0.0, 0.02);
   }
@@ -132,8 +132,8 @@ TEST_P(Street, LooksLikeItselfTheSameWayAndTheOther) {
   double least_same = 1.0, least_opposite = 1.0, most_else = 0.0;
   for (const double x : {15.0, 25.0, 35.0, 45.0}) {
     const auto here = describe(around(x).first.columns);
-    const Alignment same = align(here, describe(around(again(x) + 1.0).first.columns));
-    const Alignment opposite_way = align(here, describe(around(opposite(x) + 1.0).first.columns));
+    const HeadingMatch same = align(here, describe(around(again(x) + 1.0).first.columns));
+    const HeadingMatch opposite_way = align(here, describe(around(opposite(x) + 1.0).first.columns));
     EXPECT_NEAR(same.yaw_rad, 0.0, 0.1);
     EXPECT_NEAR(std::abs(opposite_way.yaw_rad), M_PI, 0.15);
     least_same = std::min(least_same, same.score);

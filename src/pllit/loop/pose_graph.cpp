@@ -75,20 +75,21 @@ std::vector<SE3> optimised(const PoseGraph& graph) {
 RobustSolution optimised_robustly(const PoseGraph& graph, double max_squared_error) {
   return on_one_thread([&] {
     const auto trusted = trusted_factors(graph);
-    RobustSolution solution{minimise(graph, trusted, graph.guesses_M, std::vector(graph.loops.size(), 1.0), 20),
-                            std::vector(graph.loops.size(), 1.0)};
-    if (graph.loops.empty()) return solution;
+    RobustSolution solution{graph.guesses_M, std::vector(graph.loops.size(), 1.0)};
     std::vector<double> squared = squared_errors(graph.loops, solution.poses_M);
-    // Begins where the surrogate is convex and ends where it is all but truncated least squares itself.
-    double mu = max_squared_error / std::max(1e-9, 2.0 * std::ranges::max(squared) - max_squared_error);
-    if (mu <= 0.0 || mu > 1e3) return solution;  // every error is within its bound as it is
-    for (constexpr double last_mu = 1e3; mu < last_mu; mu *= 2.0) {
-      for (std::size_t i = 0; i < squared.size(); ++i)
-        solution.loop_weights[i] = truncated_weight(squared[i], max_squared_error, mu);
-      solution.poses_M = minimise(graph, trusted, solution.poses_M, solution.loop_weights, 4);
-      squared = squared_errors(graph.loops, solution.poses_M);
+    const double worst = squared.empty() ? 0.0 : std::ranges::max(squared);
+    if (worst > 0.5 * max_squared_error) {
+      // Begins where the surrogate is convex and loops that are far off weigh next to nothing; ends where it is all but
+      // truncated least squares itself.
+      constexpr double last_mu = 1e3, growth = 2.0;
+      for (double mu = max_squared_error / (2.0 * worst - max_squared_error); mu < last_mu; mu *= growth) {
+        for (std::size_t i = 0; i < squared.size(); ++i)
+          solution.loop_weights[i] = truncated_weight(squared[i], max_squared_error, mu);
+        solution.poses_M = minimise(graph, trusted, solution.poses_M, solution.loop_weights, 4);
+        squared = squared_errors(graph.loops, solution.poses_M);
+      }
+      for (double& weight : solution.loop_weights) weight = weight > 0.5 ? 1.0 : 0.0;
     }
-    for (double& weight : solution.loop_weights) weight = weight > 0.5 ? 1.0 : 0.0;
     solution.poses_M = minimise(graph, trusted, solution.poses_M, solution.loop_weights, 50);
     return solution;
   });

@@ -95,7 +95,7 @@ std::vector<FrameCell> loop_row(const LoopRecord& record) {
           record.accepted || !record.reason.empty() ? record.reason : "no other loop agrees"};
 }
 
-void move(PointTable& map, const Correction& correction, const Trajectory& odometry) {
+void move_points(PointTable& map, const Correction& correction, const Trajectory& odometry) {
   const auto times = std::ranges::find(map.fields, "time", &ScalarField::name);
   if (odometry.empty() || times == map.fields.end()) return;
   std::size_t frame = odometry.size();  // none yet

@@ -26,7 +26,7 @@ std::vector<std::string> loop_columns();
 std::vector<FrameCell> loop_row(const LoopRecord& record);
 
 /// Moves points of the map where their frames went; field `time` tells which frame gave a point (MapRecorder).
-void move(PointTable& map, const Correction& correction, const Trajectory& odometry);
+void move_points(PointTable& map, const Correction& correction, const Trajectory& odometry);
 
 /// Turns frames into the map that is written: each voxel of the world gives its first point, in W.
 class MapRecorder {
