@@ -190,6 +190,7 @@ KeyList keys_of(Config& config) {
   map.add("file_voxel_m", config.map_file_voxel_m, "The written map holds one point in each voxel of this size.", "m",
           {0.001, 10.0});
   list_thermal(root.section("thermal", "What images do, thermal or visible."), config.vision);
+  list_features(root.section("features", "What is looked for in images."), config.vision);
   root.section("loop", "Loop closing: earlier places that are met again straighten the trajectory and the map.")
       .add_switch("enabled", config.loop.enabled, "Close loops; odometry.tum stays as it is without.");
   root.add(PLLIT_KEY(threads), "Threads for the heavy loops; 0: one for every core. Results do not depend on it.", "",

@@ -10,7 +10,13 @@ void list_thermal(Section section, VisionConfig& config) {
   section.add_switch("lines", config.residuals.lines, "Use explicit lines of the map.");
 }
 
+void list_features(Section section, VisionConfig& config) {
+  section.add(PLLIT_KEY(model), "What finds points and lines: classical, or the file of a network (models/pl_net.onnx).");
+  section.add(PLLIT_KEY(provider), "Execution provider of a network: cpu, or cuda, tensorrt where they are installed.");
+}
+
 void list_vision(Section section, VisionConfig& config) {
+  section.add(PLLIT_KEY(threads), "Threads for a network.", "", {1.0, 64.0});
   section.add("image_spacing_s", config.image_spacing, "Images that follow sooner are left out.", "s", {0.0, 10.0});
   section.add(PLLIT_KEY(T_I_C_turn_deg), "How well the camera's attitude on the rig is known, one sigma; it is refined.",
               "deg", {1e-4, 20.0});
@@ -22,6 +28,7 @@ void list_vision(Section section, VisionConfig& config) {
               "An image whose residuals are more than this multiple of the expected is not believed.", "", {1.0, 1e6});
   section.add(PLLIT_KEY(least_inliers), "Fewer residuals that fit tell too little.", "", {3.0, 1e6});
   section.add("most_points", config.classical.most_points, "Features of an image, at most.", "", {20.0, 10000.0});
+  section.add("keyframe_points", config.keyframes.most_points, "Features of a keyframe, at most.", "", {20.0, 10000.0});
   section.add("window_px", config.matching.window_px, "How far from the prediction a feature is looked for.", "px",
               {1.0, 500.0});
   section.add("keyframes", config.keyframes.most, "Keyframes that images are matched with.", "", {3.0, 50.0});

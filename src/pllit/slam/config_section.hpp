@@ -55,6 +55,7 @@ class Section {
 };
 
 void list_thermal(Section section, VisionConfig& config);
+void list_features(Section section, VisionConfig& config);
 void list_vision(Section section, VisionConfig& config);
 /// The keys of advanced.loop.
 void list_loop(Section section, LoopConfig& config);

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <format>
 
+#include "pllit/thermal/network_extractor.hpp"
+
 namespace pllit {
 namespace {
 
@@ -25,6 +27,15 @@ Matrix6 camera_covariance(const VisionConfig& config) {
   variances << Vector3d::Constant(turn_rad * turn_rad),
       Vector3d::Constant(config.T_I_C_shift_m * config.T_I_C_shift_m);
   return variances.asDiagonal();
+}
+
+Expected<std::unique_ptr<FeatureExtractor>> make_extractor(const VisionConfig& config) {
+  if (config.model == kClassical) return std::make_unique<ClassicalExtractor>(config.classical);
+  NetworkConfig network;
+  network.model = config.model;
+  network.provider = config.provider;
+  network.threads = config.threads;
+  return NetworkExtractor::open(network);
 }
 
 }  // namespace
@@ -178,7 +189,8 @@ void Vision::keep(Look look, Time time, const Estimate& posterior) {
     if (const auto& found = keyframe.depths.back())
       points_K.push_back(found->range_m * rig_.camera->ray(pixel.cast<double>()));
   }
-  set_greys(keyframe, look.around, look.counts.depth() == CV_8U ? chain_.curve : GreyCurve{});
+  const cv::Mat around = look.around.rowRange(0, static_cast<int>(keyframe.features.points_px.size()));
+  set_greys(keyframe, around, look.counts.depth() == CV_8U ? chain_.curve : GreyCurve{});
   add_clone(clones_, posterior);
   clones_.covariance.bottomRightCorner<6, 6>() += keyframe_noise(points_K, rig_, config_.residuals.point_sigma_px);
   keyframes_.push_back(std::move(keyframe));
@@ -186,7 +198,9 @@ void Vision::keep(Look look, Time time, const Estimate& posterior) {
 
 Expected<std::unique_ptr<Vision>> make_vision(const Rig& rig, const VisionConfig& config) {
   if (!rig.camera || !config.enabled) return nullptr;
-  return std::make_unique<Vision>(rig, config, std::make_unique<ClassicalExtractor>(config.classical));
+  auto extractor = make_extractor(config);
+  if (!extractor) return in_context("features.model", extractor.error());
+  return std::make_unique<Vision>(rig, config, std::move(*extractor));
 }
 
 void Vision::drop_keyframe(std::size_t index) {

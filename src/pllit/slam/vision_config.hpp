@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "pllit/thermal/classical_extractor.hpp"
 #include "pllit/thermal/depth.hpp"
@@ -14,9 +15,15 @@
 
 namespace pllit {
 
+/// The extractor without a network, as features.model.
+inline constexpr std::string_view kClassical = "classical";
+
 struct VisionConfig {
   bool enabled = true;      ///< where the rig has a camera and the recording images
   bool photometric = true;  ///< calibrate the greys of 8-bit images
+  std::string model{kClassical};  ///< or the file of a network
+  std::string provider = "cpu";   ///< that runs it
+  int threads = 2;                ///< for it
   Duration image_spacing = std::chrono::milliseconds(70);  ///< images that follow sooner are left out
   double T_I_C_turn_deg = 0.3;   ///< how well the camera's attitude on the rig is known, one sigma; it is refined
   double T_I_C_shift_m = 0.01;   ///< and its place
