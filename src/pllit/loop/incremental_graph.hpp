@@ -10,7 +10,7 @@ namespace pllit {
 
 /// iSAM2 (Kaess et al., "iSAM2: Incremental Smoothing and Mapping Using the Bayes Tree", IJRR 2012) with a Cauchy loss
 /// on loops, one thread. Measurements are taken at the next update().
-class IncrementalGraph {
+class PLLIT_GRAPH_API IncrementalGraph {
  public:
   /// Pose 0, as in PoseGraph.
   IncrementalGraph(const SE3& T_M_I, double tilt_sigma_rad);

@@ -6,6 +6,9 @@
 
 #include "pllit/state/nav_state.hpp"
 
+/// Seen outside the shared library that GTSAM is kept in.
+#define PLLIT_GRAPH_API __attribute__((visibility("default")))
+
 namespace pllit {
 
 /// A measured motion between two poses of a graph.
@@ -34,7 +37,7 @@ struct PoseGraph {
 
 /// Poses in M that minimise the squared, whitened errors of all measurements (Levenberg-Marquardt to convergence, one
 /// thread).
-std::vector<SE3> optimised(const PoseGraph& graph);
+PLLIT_GRAPH_API std::vector<SE3> optimised(const PoseGraph& graph);
 
 struct RobustSolution {
   std::vector<SE3> poses_M;
@@ -45,9 +48,9 @@ struct RobustSolution {
 /// (Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for Robust Spatial Perception", RA-L 2020). A loop
 /// whose squared whitened error exceeds `max_squared_error` at the end is wrong; 16.8 is what one right loop in a
 /// hundred exceeds.
-RobustSolution optimised_robustly(const PoseGraph& graph, double max_squared_error = 16.8);
+PLLIT_GRAPH_API RobustSolution optimised_robustly(const PoseGraph& graph, double max_squared_error = 16.8);
 
 /// Squared whitened error of a measurement at given poses.
-double squared_error(const RelativePose& measured, const std::vector<SE3>& poses_M);
+PLLIT_GRAPH_API double squared_error(const RelativePose& measured, const std::vector<SE3>& poses_M);
 
 }  // namespace pllit
