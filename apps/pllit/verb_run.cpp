@@ -18,7 +18,6 @@
 #include "pllit/slam/run.hpp"
 #include "program.hpp"
 #include "progress_bar.hpp"
-#include "session_loops.hpp"
 #include "source.hpp"
 #include "summary.hpp"
 
@@ -40,14 +39,6 @@ FrameSink session_sink(SessionWriter& session, MapRecorder& map) {
     if (auto done = session.append_pose({state.time, state.T_W_I()}); !done) return done;
     if (auto done = session.append_health(health_row(frame)); !done) return done;
     return session.append_map(map.new_points(frame));
-  };
-}
-
-/// The same frames to loop closing as well.
-FrameSink with_loops(FrameSink sink, LoopStage& loops) {
-  return [sink = std::move(sink), &loops](const FrameEstimate& frame) -> Expected<void> {
-    loops.take(frame);
-    return sink(frame);
   };
 }
 
@@ -88,9 +79,7 @@ class SessionRun {
         truth_(std::move(truth)),
         session_(std::move(session)),
         stop_(std::move(stop)),
-        map_(config.map_file_voxel_m, config.map.radius_m) {
-    if (config.loop.enabled) loop_stage_.emplace(config.loop);
-  }
+        map_(config.map_file_voxel_m, config.map.radius_m) {}
 
   Expected<ExitCode> operator()() {
     if (!source_.truth.empty())
@@ -100,36 +89,23 @@ class SessionRun {
     // What a kill leaves behind says of itself that it is unfinished.
     if (auto done = session_.write_run(run_json(summary, options_, config_, "unfinished")); !done)
       return std::unexpected(done.error());
-    auto result = run(summary);
-    if (const auto closed = close_loops(summary); result && !closed) result = closed;
+    const auto result = run(summary);
     return finish(summary, result);
   }
 
  private:
   Expected<void> run(RunSummary& summary) {
     ProgressBar bar("frames", spdlog::should_log(spdlog::level::info));
-    const FrameSink sink = session_sink(session_, map_);
-    const RunHooks hooks{.sink = loop_stage_ ? with_loops(sink, *loop_stage_) : sink,
+    const RunHooks hooks{.sink = session_sink(session_, map_),
                          .progress = [&](double share) { bar.show(share, summary.frames); },
                          .stop = stop_};
     return run_odometry(*source_.events, source_.rig, config_, hooks, summary);
-  }
-
-  /// However the run ended: what was seen until then closes too.
-  Expected<void> close_loops(RunSummary& summary) {
-    if (!loop_stage_) return {};
-    loops_ = loop_stage_->finish();
-    summary.stage_ms[static_cast<std::size_t>(Stage::loop)] = loops_.frame_ms;
-    if (!loops_.stopped.empty()) summary.notes.push_back("loop closing stopped: " + loops_.stopped);
-    return write_loops(session_, loops_);
   }
 
   Expected<ExitCode> finish(const RunSummary& summary, const Expected<void>& result) {
     const char* status = !result ? "failed" : summary.interrupted ? "interrupted" : "done";
     auto json = run_json(summary, options_, config_, status);
     if (!result) json["error"] = result.error().message;
-    json["loops"] = {{"accepted", loops_.accepted},
-                     {"rejected", loops_.records.size() - static_cast<std::size_t>(loops_.accepted)}};
     const auto scene = source_.scene_json ? write_file(session_.folder() / "scene.json", source_.scene_json() + "\n")
                                           : Expected<void>{};
     const auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
@@ -162,8 +138,6 @@ class SessionRun {
   SessionWriter session_;
   std::stop_token stop_;
   MapRecorder map_;
-  std::optional<LoopStage> loop_stage_;  // none where loop closing is off
-  LoopResult loops_;
 };
 
 Expected<ExitCode> run_session(const Options& options) {

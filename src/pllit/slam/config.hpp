@@ -9,7 +9,6 @@
 #include "pllit/lidar/downsample.hpp"
 #include "pllit/lidar/plane_map.hpp"
 #include "pllit/lidar/plane_residuals.hpp"
-#include "pllit/loop/loop_config.hpp"
 #include "pllit/sensor/rig.hpp"
 #include "pllit/slam/drift.hpp"
 #include "pllit/slam/health.hpp"
@@ -78,7 +77,6 @@ struct Config {
   DriftConfig drift;
   HealthConfig health;
   VisionConfig vision;
-  LoopConfig loop;
 };
 
 /// Equal in every key.

@@ -191,8 +191,6 @@ KeyList keys_of(Config& config) {
           {0.001, 10.0});
   list_thermal(root.section("thermal", "What images do, thermal or visible."), config.vision);
   list_features(root.section("features", "What is looked for in images."), config.vision);
-  root.section("loop", "Loop closing: earlier places that are met again straighten the trajectory and the map.")
-      .add_switch("enabled", config.loop.enabled, "Close loops; odometry.tum stays as it is without.");
   root.add(PLLIT_KEY(threads), "Threads for the heavy loops; 0: one for every core. Results do not depend on it.", "",
            {0.0, 256.0});
   Section advanced = root.section("advanced", "For experts: the defaults serve nearly everyone.");
@@ -207,7 +205,6 @@ KeyList keys_of(Config& config) {
   list(advanced.section("drift", "How the doubt about the map grows."), config.drift);
   list_vision(advanced.section("vision", "How images are matched and believed."), config.vision);
   list(advanced.section("health", "When a frame is called degraded or lost."), config.health);
-  list_loop(advanced.section("loop", "How loops are found and checked."), config.loop);
   return keys;
 }
 

@@ -7,7 +7,6 @@ void list_thermal(Section section, VisionConfig& config) {
   section.add_switch(PLLIT_KEY(enabled), "Refine the LiDAR's pose with the images, thermal or visible.");
   section.add_switch(PLLIT_KEY(photometric), "Calibrate the greys of 8-bit images against gain control.");
   section.add_switch("weights", config.residuals.weights, "Give points on matched lines more weight.");
-  section.add_switch("lines", config.residuals.lines, "Use explicit lines of the map.");
 }
 
 void list_features(Section section, VisionConfig& config) {
@@ -33,8 +32,6 @@ void list_vision(Section section, VisionConfig& config) {
               {1.0, 500.0});
   section.add("keyframes", config.keyframes.most, "Keyframes that images are matched with.", "", {3.0, 50.0});
   section.add("point_sigma_px", config.residuals.point_sigma_px, "Noise of a matched point, one sigma.", "px",
-              {0.05, 50.0});
-  section.add("line_sigma_px", config.residuals.line_sigma_px, "Noise of a line's end across it, one sigma.", "px",
               {0.05, 50.0});
   section.add("gate", config.residuals.gate, "Residuals beyond this many standard deviations do not count.", "",
               {0.1, 100.0});

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -57,7 +56,5 @@ class Section {
 void list_thermal(Section section, VisionConfig& config);
 void list_features(Section section, VisionConfig& config);
 void list_vision(Section section, VisionConfig& config);
-/// The keys of advanced.loop.
-void list_loop(Section section, LoopConfig& config);
 
 }  // namespace pllit
