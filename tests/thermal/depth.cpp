@@ -198,12 +198,13 @@ std::optional<FeatureDepth> naive_depth(const std::vector<Vector3f>& points_C, c
     if (angle2 <= reach * reach) all.push_back({p, range, angle2});
   }
   std::ranges::sort(all, {}, &RaysNeighbour::angle2);
-  // The patch is as wide as the nearest of all surfaces around asks for.
+  // The patch is as wide as the nearest surface close to the ray asks for.
   std::vector<RaysNeighbour> kept;
   float nearest = 1e9F;
-  for (const RaysNeighbour& point : all) nearest = std::min(nearest, point.range_m);
-  const float patch =
-      std::max(static_cast<float>(config.patch_m) / nearest, static_cast<float>(config.clear_deg * M_PI / 180.0));
+  const float clear = static_cast<float>(config.clear_deg * M_PI / 180.0);
+  for (const RaysNeighbour& point : all)
+    if (point.angle2 <= clear * clear) nearest = std::min(nearest, point.range_m);
+  const float patch = std::max(static_cast<float>(config.patch_m) / nearest, clear);
   for (const RaysNeighbour& point : all)
     if (kept.size() < 5 || point.angle2 <= patch * patch) kept.push_back(point);
   std::ranges::sort(kept, {}, &RaysNeighbour::range_m);

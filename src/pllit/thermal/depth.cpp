@@ -54,10 +54,11 @@ class DepthImage::Neighbours {
   bool full() const { return count_ == most; }
   int count() const { return count_; }
   float nearest_range_m() const { return nearest_range_m_; }
-  void add(const RaysNeighbour& neighbour) {
+  /// `clear2`: squared angle within which a point decides how wide the patch is.
+  void add(const RaysNeighbour& neighbour, float clear2) {
     if (full()) return;
     all_[count_++] = neighbour;
-    nearest_range_m_ = std::min(nearest_range_m_, neighbour.range_m);
+    if (neighbour.angle2 <= clear2) nearest_range_m_ = std::min(nearest_range_m_, neighbour.range_m);
   }
   /// Leaves those within the angle, or the nearest few where fewer are.
   void keep_within(float angle2) {
@@ -157,6 +158,7 @@ void DepthImage::hide() {
 
 void DepthImage::collect(const Vector3f& ray, Neighbours& neighbours) const {
   const auto reach = static_cast<float>(std::sin(config_.reach_deg * kRad));
+  const auto clear = static_cast<float>(config_.clear_deg * kRad);
   const Vector2f centre = sphere_bin(ray);
   const int column = static_cast<int>(std::floor(centre.x())), row = static_cast<int>(std::floor(centre.y()));
   const auto visit = [&](int r, int c) {
@@ -164,12 +166,11 @@ void DepthImage::collect(const Vector3f& ray, Neighbours& neighbours) const {
     const std::int32_t i = bins_[static_cast<std::size_t>(r) * columns_ + c];
     if (i < 0) return;
     const float angle2 = (points_[i] / ranges_[i] - ray).squaredNorm();
-    if (angle2 <= reach * reach) neighbours.add({points_[i], ranges_[i], angle2});
+    if (angle2 <= reach * reach) neighbours.add({points_[i], ranges_[i], angle2}, clear * clear);
   };
   // A patch of the surface, and what tells whether a nearer one ends close by.
   const auto wanted_angle = [&] {
-    return std::max(static_cast<float>(config_.clear_deg * kRad),
-                    static_cast<float>(config_.patch_m) / neighbours.nearest_range_m());
+    return std::max(clear, static_cast<float>(config_.patch_m) / neighbours.nearest_range_m());
   };
   for (int ring = 0; !neighbours.full(); ++ring) {
     if (ring == 0) visit(row, column);

@@ -1,10 +1,11 @@
 #include "pllit/thermal/near_surface.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace pllit {
 
@@ -74,52 +75,87 @@ std::span<RaysNeighbour> owner_of(const Vector3d& ray, std::span<RaysNeighbour> 
   return {};
 }
 
-/// A plane fitted to points, with what is known of it.
-struct Plane {
-  Vector3d centre = Vector3d::Zero();
-  Eigen::Vector3d variances_m2 = Vector3d::Zero();  ///< ascending: about the plane, then within it
-  Matrix3d axes = Matrix3d::Identity();             ///< columns: normal, then within
-  int points = 0;
-
-  Vector3d normal() const { return axes.col(0); }
+/// A plane seen around a ray. Its inverse depth is linear in where one looks, and what errs is the depth alone: at a
+/// few metres the noise along the rays is as large as the patch, and a total least squares fit would take the one for
+/// the other. In metres: y = z0^2 / z over the offset x = z0 (u, v) across the ray, z along it; z0 is about where it
+/// lies.
+struct RayPlane {
+  Vector3d coefficients = Vector3d::Zero();  ///< y on the ray, and its slopes
+  Matrix3d covariance = Matrix3d::Zero();
+  double scatter_m2 = 0.0;
+  std::size_t points = 0;
 };
 
-template <class Keep>
-Plane plane_through(std::span<const RaysNeighbour> points, const Keep& keep) {
-  Plane plane;
-  Matrix3d squares = Matrix3d::Zero();
-  const Vector3d origin = points.front().p_C.cast<double>();
-  for (const RaysNeighbour& point : points) {
-    const Vector3d p = point.p_C.cast<double>() - origin;
-    if (!keep(point)) continue;
-    plane.centre += p;
-    squares += p * p.transpose();
-    ++plane.points;
+class RayPlaneFit {
+ public:
+  RayPlaneFit(const Vector3d& ray, std::span<const RaysNeighbour> points, double range_sigma_m)
+      : ray_(ray), u_(ray.unitOrthogonal()), v_(ray.cross(u_)), points_(points), sigma_m_(range_sigma_m) {
+    z0_m_ = points[points.size() / 2].p_C.cast<double>().dot(ray);
   }
-  if (plane.points == 0) return plane;
-  plane.centre /= plane.points;
-  Eigen::SelfAdjointEigenSolver<Matrix3d> eigen;
-  eigen.computeDirect(squares / plane.points - plane.centre * plane.centre.transpose());
-  plane.variances_m2 = eigen.eigenvalues().cwiseMax(0.0);
-  plane.axes = eigen.eigenvectors();
-  plane.centre += origin;
-  return plane;
-}
 
-/// A fit without the points (mixed pixels, small things) that stand off the plane of the others.
-Plane trimmed_plane(std::span<const RaysNeighbour> points, const DepthConfig& config) {
-  constexpr int rounds = 4;
-  const double limit = 2.0 * config.range_sigma_m;
-  Plane plane = plane_through(points, [](const RaysNeighbour&) { return true; });
-  for (int round = 0; round < rounds; ++round) {
-    const Plane kept = plane_through(points, [&](const RaysNeighbour& point) {
-      return std::abs((point.p_C.cast<double>() - plane.centre).dot(plane.normal())) <= limit;
-    });
-    if (kept.points < static_cast<int>(least_points) || kept.points == plane.points) break;
-    plane = kept;
+  /// The fit to the points within `limit_m` of `before`.
+  RayPlane fit(const RayPlane& before, double limit_m) const {
+    // Slopes are taken to be a few at most, which decides where the points lie on a line or too close together.
+    constexpr double slope_sigma = 2.0;
+    const double ridge = sigma_m_ * sigma_m_ / (slope_sigma * slope_sigma);
+    Matrix3d XtX = Vector3d(0.0, ridge, ridge).asDiagonal();
+    Vector3d Xty = Vector3d::Zero();
+    double yy = 0.0;
+    RayPlane plane;
+    for (const RaysNeighbour& point : points_) {
+      const auto [x, y] = row(point);
+      if (std::abs(y - x.dot(before.coefficients)) > limit_m) continue;
+      XtX += x * x.transpose();
+      Xty += y * x;
+      yy += y * y;
+      ++plane.points;
+    }
+    if (plane.points < least_points) return plane;
+    const Matrix3d inverse = XtX.inverse();
+    plane.coefficients = inverse * Xty;
+    const double freedom = std::max(1.0, static_cast<double>(plane.points) - 3.0);
+    plane.scatter_m2 = std::max(0.0, yy - plane.coefficients.dot(Xty)) / freedom;
+    plane.covariance = std::max(plane.scatter_m2, sigma_m_ * sigma_m_) * inverse;
+    return plane;
   }
-  return plane;
-}
+
+  /// Without the points (mixed pixels, small things) that stand off the plane of the others.
+  RayPlane trimmed() const {
+    constexpr int rounds = 4;
+    RayPlane plane = fit({}, std::numeric_limits<double>::infinity());
+    for (int round = 0; round < rounds; ++round) {
+      const RayPlane kept = fit(plane, 2.5 * std::max(sigma_m_, std::min(std::sqrt(plane.scatter_m2), 2.0 * sigma_m_)));
+      if (kept.points < least_points || kept.points == plane.points) break;
+      plane = kept;
+    }
+    return plane;
+  }
+
+  double range_m(const RayPlane& plane) const { return z0_m_ * z0_m_ / plane.coefficients[0]; }
+  double tan_incidence(const RayPlane& plane) const {
+    return plane.coefficients.tail<2>().norm() * z0_m_ / plane.coefficients[0];
+  }
+  /// Unit, towards the camera.
+  Vector3d normal(const RayPlane& plane) const {
+    const Vector3d& c = plane.coefficients;
+    return -(c[0] / z0_m_ * ray_ + c[1] * u_ + c[2] * v_).normalized();
+  }
+
+ private:
+  struct Row {
+    Vector3d x;
+    double y;
+  };
+  Row row(const RaysNeighbour& point) const {
+    const Vector3d p = point.p_C.cast<double>();
+    const double scale = z0_m_ / p.dot(ray_);
+    return {{1.0, scale * p.dot(u_), scale * p.dot(v_)}, z0_m_ * scale};
+  }
+
+  Vector3d ray_, u_, v_;
+  std::span<const RaysNeighbour> points_;
+  double sigma_m_, z0_m_;
+};
 
 }  // namespace
 
@@ -127,32 +163,21 @@ std::optional<FeatureDepth> depth_on_near_surface(const Vector3d& ray, std::span
                                                   const DepthConfig& config, double focal_px) {
   const auto points = owner_of(ray, by_range, config);
   if (points.size() < least_points) return std::nullopt;
-  const Plane plane = trimmed_plane(points, config);
-  const double range_sigma = config.range_sigma_m, middle_m = plane.centre.norm();
-  if (std::sqrt(plane.variances_m2[0]) > 1.5 * range_sigma + config.residual_share * middle_m) return std::nullopt;
-
-  const double slant = plane.normal().dot(ray);
-  const double cos_incidence = std::abs(slant);
-  if (cos_incidence < std::cos(config.most_incidence_deg * kRad)) return std::nullopt;
-  const double range_m = plane.normal().dot(plane.centre) / slant;
+  const RayPlaneFit fit(ray, points, config.range_sigma_m);
+  const RayPlane plane = fit.trimmed();
+  if (plane.points < least_points || !(plane.coefficients[0] > 0.0)) return std::nullopt;
+  const double range_m = fit.range_m(plane), tan_incidence = fit.tan_incidence(plane);
+  if (std::sqrt(plane.scatter_m2) > 1.5 * config.range_sigma_m + config.residual_share * range_m) return std::nullopt;
+  if (tan_incidence > std::tan(config.most_incidence_deg * kRad)) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(points, {}, &RaysNeighbour::range_m);
   const double doubt_m = jump_m(range_m, config);
   if (!(range_m > low.range_m - doubt_m && range_m < high.range_m + doubt_m)) return std::nullopt;
 
-  // Height of the fitted plane where the ray meets it: the mean's error and the tilt's, about both axes.
-  constexpr double least_spread_m2 = 1e-6;
-  const Vector3d offset = plane.axes.transpose() * (range_m * ray - plane.centre);
-  const double scatter = std::max(range_sigma * range_sigma, plane.variances_m2[0]) / plane.points;
-  const double height = scatter * (1.0 + offset[1] * offset[1] / std::max(plane.variances_m2[1], least_spread_m2) +
-                                   offset[2] * offset[2] / std::max(plane.variances_m2[2], least_spread_m2));
-  const double tan_incidence = std::sqrt(1.0 - cos_incidence * cos_incidence) / cos_incidence;
   const double bearing_m = range_m * tan_incidence * config.bearing_sigma_px / focal_px;
   // The range's own error counts whole: what a surface does to a LiDAR's beam it does to all of them.
-  const double variance = range_sigma * range_sigma + height / (cos_incidence * cos_incidence) + bearing_m * bearing_m;
+  const double variance = config.range_sigma_m * config.range_sigma_m + plane.covariance(0, 0) + bearing_m * bearing_m;
   if (variance > doubt_m * doubt_m) return std::nullopt;
-  return FeatureDepth{.range_m = range_m,
-                      .sigma_m = std::sqrt(variance),
-                      .normal_C = slant > 0.0 ? Vector3d(-plane.normal()) : plane.normal()};
+  return FeatureDepth{.range_m = range_m, .sigma_m = std::sqrt(variance), .normal_C = fit.normal(plane)};
 }
 
 }  // namespace pllit
