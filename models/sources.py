@@ -1,5 +1,7 @@
 """Images with points and segments to train on, made once from seeds and kept in a folder."""
+import json
 import pathlib
+import subprocess
 
 import cv2
 import numpy as np
@@ -63,3 +65,54 @@ def hit_uav(folder, held_out=False):
     """The stills that may be trained on, or those held out."""
     stills = sorted(pathlib.Path(folder).glob("*.jpg"))
     return [still for i, still in enumerate(stills) if (i % HELD_OUT == 0) == held_out]
+
+
+# Scenes of the simulator to train on: seeds from 10000 on, never `plant`, never a row of bench/sequences.yaml.
+SIMULATED = {
+    "street": "street --seed 10001 --duration 12 --set image_rate=1 --set length=400",
+    "room": "room --seed 10002 --duration 24 --set image_rate=0.5 --set rig=inspection",
+    "stairs": "stairs --seed 10003 --duration 14 --set image_rate=0.5 --set rig=inspection",
+    "corridor": "corridor --seed 10004 --duration 14 --set image_rate=0.5 --set rig=inspection --set length=40",
+}
+LEAST_EDGE_GREY = 5.0  # an edge of the scene that shows less than this in the image is none of the image's
+
+
+def simulate(folder, program):
+    for name, scene in SIMULATED.items():
+        if not (folder / name / "frames.json").exists():
+            common = "--set images=agc --set scans=0 --truth edges --overwrite --frames"
+            subprocess.run([program, "simulate", *scene.split(), *common.split(), str(folder / name)], check=True)
+
+
+def label_simulated(folder, frames, seed):
+    """The scene's own edges where they show; points as in stills."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for number, still in enumerate(sorted(frames.glob("*/*.grey.png"))):
+        path = folder / f"{still.parent.name}_{still.name.split('.')[0]}.npz"
+        if path.exists():
+            continue
+        grey = cv2.imread(str(still), cv2.IMREAD_GRAYSCALE).astype(np.float32)
+        edges = json.loads(still.with_name(still.name.replace("grey.png", "edges.json")).read_text())["edges"]
+        pieces = [piece for edge in edges for piece in _straight(np.array(edge["line_px"]))]
+        shown = [piece for piece in pieces if _shows(grey, piece)]
+        points = repeated_points(np.random.default_rng((seed, number)), grey / 255, rounds=6)
+        _keep(path, grey / 255, points, np.array(shown).reshape(-1, 4))
+
+
+def _straight(line, most_bend_px=1.0):
+    """A polyline as one segment where it hardly bends, else piece by piece."""
+    along = (line[-1] - line[0]) / max(np.hypot(*(line[-1] - line[0])), 1e-6)
+    bend = np.abs((line - line[0]) @ np.array([-along[1], along[0]])).max()
+    ends = [(line[0], line[-1])] if bend < most_bend_px else zip(line[:-1], line[1:])
+    return [np.concatenate(pair) for pair in ends]
+
+
+def _shows(grey, segment):
+    a, b = segment[:2], segment[2:]
+    length = np.hypot(*(b - a))
+    if length < 8:
+        return False
+    at = a + np.linspace(0.05, 0.95, max(int(length / 2), 4))[:, None] * (b - a)
+    normal = np.array([-(b - a)[1], (b - a)[0]]) / length
+    sides = [cv2.remap(grey, *np.float32((at + off * normal).T[:, :, None]), cv2.INTER_LINEAR) for off in (-2.0, 2.0)]
+    return abs(float((sides[0] - sides[1]).mean())) > LEAST_EDGE_GREY

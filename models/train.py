@@ -4,7 +4,7 @@ Stages, each kept in FOLDER as it goes; a run that was cut off goes on where it 
   data    drawn scenes, labelled stills of HIT-UAV and of the simulator (see models/README.md)
   shapes  all heads on drawn scenes, whose truth is exact
   joint   all heads on drawn scenes and stills
-  wider   the same on larger crops
+  settle  all heads, simulated thermal images too
   lines   the line branch alone on thermal images, everything else frozen (the paper's second step)
   export  models/pl_net.onnx
 """
@@ -25,18 +25,20 @@ HERE = pathlib.Path(__file__).resolve().parent
 STILLS = HERE.parent.parent / "shared/data/thermal/hit_uav"
 SEED = 20260
 STAGES = {
-    # `schedule`: steps over which the learning rate rises and falls. Crops of `size` px, `pairs` pairs of them a step. Weights of the groups of images: drawn, HIT-UAV, simulated.
+    # `schedule`: steps over which the learning rate rises and falls; `pairs` pairs of crops of `size` px a step; then the
+    # weights of the groups of images.
     "shapes": dict(steps=241, schedule=600, rate=3e-3, pairs=6, size=192, shapes=1.0),
     "joint": dict(steps=1000, schedule=1000, rate=3e-3, pairs=4, size=160, shapes=0.45, hit_uav=0.55),
-    "wider": dict(steps=500, schedule=500, rate=1.5e-3, pairs=4, size=192, shapes=0.4, hit_uav=0.6),
-    "lines": dict(steps=200, schedule=200, rate=1e-3, pairs=3, size=192, shapes=0.3, hit_uav=0.3, simulated=0.4),
+    "settle": dict(steps=300, schedule=300, rate=1.5e-3, pairs=4, size=192, shapes=0.35, hit_uav=0.4, simulated=0.25),
+    "lines": dict(steps=200, schedule=200, rate=1e-3, pairs=2, size=192, shapes=0.3, hit_uav=0.3, simulated=0.4),
 }
 
 
 def make_data(work):
     sources.make_shapes(work / "shapes", 900, SEED)
-    sources.label(work / "hit_uav", sources.hit_uav(STILLS), SEED + 1, every=2)
-    sources.label(work / "simulated", sorted((work / "frames").glob("*.png")), SEED + 2)
+    sources.label(work / "hit_uav", sources.hit_uav(STILLS)[:146], SEED + 1, every=2)
+    sources.simulate(work / "frames", str(HERE.parent / "pllit"))
+    sources.label_simulated(work / "simulated", work / "frames", SEED + 2)
 
 
 def examples(work, stage):
@@ -98,9 +100,9 @@ def run_stage(name, work, net, minutes_between_saves=3.0):
         schedule.step()
         for part, value in parts.items():
             sums[part] = sums.get(part, 0.0) + value.item()
-        if step % 50 == 0:
-            shown = "  ".join(f"{part} {value / 50:.3f}" for part, value in sums.items())
-            print(f"{name} {step}/{stage['steps']}  {shown}  {(time.monotonic() - since) / 50:.2f} s", flush=True)
+        if step % 25 == 0:
+            shown = "  ".join(f"{part} {value / 25:.3f}" for part, value in sums.items())
+            print(f"{name} {step}/{stage['steps']}  {shown}  {(time.monotonic() - since) / 25:.2f} s", flush=True)
             sums, since = {}, time.monotonic()
         if step == stage["steps"] or time.monotonic() - saved > 60 * minutes_between_saves:
             partial = kept.with_suffix(".partial")
