@@ -29,11 +29,13 @@ inline cv::Matx33d random_homography(cv::RNG& random, const cv::Size& size) {
   const double c = scale * std::cos(angle), s = scale * std::sin(angle);
   const cv::Matx33d there(1, 0, -centre.x, 0, 1, -centre.y, 0, 0, 1);
   const cv::Matx33d turn(c, -s, 0, s, c, 0, random.uniform(-1e-4, 1e-4), random.uniform(-1e-4, 1e-4), 1);
-  const cv::Matx33d back(1, 0, centre.x + random.uniform(-40.0, 40.0), 0, 1, centre.y + random.uniform(-40.0, 40.0), 0, 0, 1);
+  const cv::Matx33d back(1, 0, centre.x + random.uniform(-40.0, 40.0), 0, 1, centre.y + random.uniform(-40.0, 40.0), 0,
+                         0, 1);
   return back * turn * there;
 }
 
-/// A gain 0.6 to 1.6 and a bias of up to 40 grey levels, after a clipped equalisation of the histogram every other time.
+/// A gain 0.6 to 1.6 and a bias of up to 40 grey levels, after a clipped equalisation of the histogram every other
+/// time.
 inline cv::Mat gain_controlled(const cv::Mat& grey, cv::RNG& random) {
   cv::Mat out = grey.clone();
   if (random.uniform(0.0, 1.0) < 0.5) {
@@ -138,8 +140,8 @@ inline Length on_lines(const LineSegment& segment, const std::vector<LineSegment
   return length;
 }
 
-inline Length lines_that_come_back(const std::vector<LineSegment>& from, const std::vector<LineSegment>& to, const cv::Matx33d& h,
-                            const cv::Size& size) {
+inline Length lines_that_come_back(const std::vector<LineSegment>& from, const std::vector<LineSegment>& to,
+                                   const cv::Matx33d& h, const cv::Size& size) {
   Length sum;
   for (const LineSegment& line : from) {
     const Length one = on_lines({carried(h, line.start_px), carried(h, line.end_px), 0.0F}, to, size);

@@ -1,6 +1,8 @@
-// How well points and lines come back: bench_features MODEL FOLDER... where a folder holds images, or what `pllit simulate
-// --frames` wrote. Each image is paired with itself under a random homography (seeded; new sensor noise), and again under
-// the homography and a random gain control. Every detector gives its best 300 points, spread by the same rule (corners.hpp).
+// How well points and lines come back: bench_features MODEL FOLDER... where a folder holds images, or what `pllit
+// simulate
+// --frames` wrote. Each image is paired with itself under a random homography (seeded; new sensor noise), and again
+// under the homography and a random gain control. Every detector gives its best 300 points, spread by the same rule
+// (corners.hpp).
 //
 // repeatability: share of the points, both ways, that have one within 3 px in the other image, of those that it shows.
 // matching score: mutual nearest neighbours by descriptor that are within 3 px of the truth, over the points shown.
@@ -98,8 +100,9 @@ std::vector<fs::path> images_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder))
     if (const std::string name = entry.path().filename().string();
-        name.ends_with(".jpg") || name.ends_with(".JPG") || (name.ends_with(".png") && !name.contains(".counts") &&
-                                                             !name.contains(".depth") && !name.contains(".temperature")))
+        name.ends_with(".jpg") || name.ends_with(".JPG") ||
+        (name.ends_with(".png") && !name.contains(".counts") && !name.contains(".depth") &&
+         !name.contains(".temperature")))
       files.push_back(entry.path());
   std::ranges::sort(files);
   return files;
@@ -116,12 +119,13 @@ void report_pairs(const fs::path& folder, const std::vector<Method>& methods, st
   std::vector<fs::path> files = images_in(folder);
   const std::size_t every = std::max<std::size_t>(files.size() / most, 1);
   for (const bool gain : {false, true}) {
-    std::printf("\n%s, homography%s\n%-36s %8s %14s %14s %8s %14s\n", folder.c_str(), gain ? " and gain control" : "", "",
-                "points", "repeatability", "matching", "lines", "repeatability");
+    std::printf("\n%s, homography%s\n%-36s %8s %14s %14s %8s %14s\n", folder.c_str(), gain ? " and gain control" : "",
+                "", "points", "repeatability", "matching", "lines", "repeatability");
     for (const Method& method : methods) {
       Score score;
       for (std::size_t i = 0; i < files.size(); i += every)
-        if (const cv::Mat image = read_grey(files[i]); !image.empty()) add(score, method, make_pair(image, gain, static_cast<int>(i)));
+        if (const cv::Mat image = read_grey(files[i]); !image.empty())
+          add(score, method, make_pair(image, gain, static_cast<int>(i)));
       std::printf("%-36s %8.0f %14s %14s %8.0f %14s\n", method.name.c_str(), score.points / score.pairs,
                   share(score.back, score.shown).c_str(), share(score.right, score.could_match).c_str(),
                   score.lines / score.pairs, share(score.line.on, score.line.all).c_str());
@@ -138,7 +142,8 @@ void report_time(const Method& method, const cv::Mat& image) {
     times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   }
   std::ranges::sort(times_ms);
-  std::printf("%-36s %8.1f least, %8.1f median\n", method.name.c_str(), times_ms.front(), times_ms[times_ms.size() / 2]);
+  std::printf("%-36s %8.1f least, %8.1f median\n", method.name.c_str(), times_ms.front(),
+              times_ms[times_ms.size() / 2]);
 }
 
 }  // namespace

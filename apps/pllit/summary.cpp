@@ -33,12 +33,10 @@ Json summary_json(const RunSummary& summary) {
     json["stage_ms"][std::string(stage_names[i])] = {{"mean", summary.stage_ms[i].mean()},
                                                      {"p99", summary.stage_ms[i].percentile(0.99)}};
   json["peak_memory_mb"] = peak_memory_mb();
-  json["health"] = {{"state", name_of(summary.final_state)},
-                    {"initialising", summary.count(HealthState::initialising)},
-                    {"good", summary.count(HealthState::good)},
-                    {"degraded", summary.count(HealthState::degraded)},
-                    {"lost", summary.count(HealthState::lost)},
-                    {"doubts", summary.doubts()}};
+  json["health"] = {
+      {"state", name_of(summary.final_state)},    {"initialising", summary.count(HealthState::initialising)},
+      {"good", summary.count(HealthState::good)}, {"degraded", summary.count(HealthState::degraded)},
+      {"lost", summary.count(HealthState::lost)}, {"doubts", summary.doubts()}};
   json["start"] = summary.start ? summary.start->report : "not started";
   json["notes"] = summary.notes;
   return json;

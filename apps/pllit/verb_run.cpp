@@ -156,8 +156,7 @@ Expected<ExitCode> run_session(const Options& options) {
   if (!session) return std::unexpected(session.error());
   if (options.out.empty())
     if (const auto linked = link_latest(folder); !linked) spdlog::warn("{}", linked.error().message);
-  return SessionRun(options, *config, std::move(*source), std::move(*truth), std::move(*session),
-                    interrupt.token())();
+  return SessionRun(options, *config, std::move(*source), std::move(*truth), std::move(*session), interrupt.token())();
 }
 
 ExitCode run(const Options& options) {

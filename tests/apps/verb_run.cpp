@@ -14,12 +14,11 @@ using testing::IsEmpty;
 
 class RunVerb : public test::ProgramTest {
  protected:
-  bool some_poses_written(pid_t process) const {
-    return waited_for(process, path("session/trajectory.tum"), 1000);
-  }
+  bool some_poses_written(pid_t process) const { return waited_for(process, path("session/trajectory.tum"), 1000); }
   /// A short recording of a simple room.
   std::string bag() const {
-    const auto made = run({"simulate", "box_room", "--duration", "6", "--set", "lidar=ring16", "--out", path("room.bag")});
+    const auto made =
+        run({"simulate", "box_room", "--duration", "6", "--set", "lidar=ring16", "--out", path("room.bag")});
     EXPECT_EQ(made.exit_code, 0) << made.err;
     return path("room.bag");
   }

@@ -90,7 +90,8 @@ TEST(RunVerdict, IsEmptyOnlyWhereTheWholeRunCanBeTrusted) {
   EXPECT_EQ(summary.doubts(), "degraded in 14 of 100 frames, more than a tenth");
   summary.health = {0, 83, 14, 3};
   summary.final_state = HealthState::lost;
-  EXPECT_EQ(summary.doubts(), "lost in 3 of 100 frames; degraded in 14 of 100 frames, more than a tenth; lost at the end");
+  EXPECT_EQ(summary.doubts(),
+            "lost in 3 of 100 frames; degraded in 14 of 100 frames, more than a tenth; lost at the end");
 }
 
 }  // namespace

@@ -78,8 +78,8 @@ TEST(JointUpdate, EqualsTheSchmidtGainOnALinearSensor) {
   const Vector3d offset(0.02, -0.03, 0.01);
   const Vector3d predicted = joint.estimate.mean.p_W - joint.clones.poses[1].translation();
   const double sigma = 0.05;
-  const auto update = iterated_update(joint.estimate, joint.clones,
-                                      relative_position(joint, predicted + offset, sigma), FilterConfig{});
+  const auto update = iterated_update(joint.estimate, joint.clones, relative_position(joint, predicted + offset, sigma),
+                                      FilterConfig{});
 
   const MatrixXd P = joint_covariance(joint.estimate, joint.clones);
   MatrixXd H = MatrixXd::Zero(3, P.cols());
@@ -167,8 +167,9 @@ TEST(JointUpdate, ImprovesAnUnknownPoseAsWellAsTheState) {
 TEST(JointUpdate, WithoutInliersReturnsThePrior) {
   Random random(4);
   const Joint joint = random_joint(random);
-  const auto update = iterated_update(joint.estimate, joint.clones, [](const NavState&, std::span<const SE3>) { return JointEquations(2); },
-                                      FilterConfig{});
+  const auto update = iterated_update(
+      joint.estimate, joint.clones, [](const NavState&, std::span<const SE3>) { return JointEquations(2); },
+      FilterConfig{});
   EXPECT_EQ(update.posterior.covariance, joint.estimate.covariance);
   EXPECT_EQ(update.clones.with_state, joint.clones.with_state);
 }

@@ -206,7 +206,8 @@ TEST(Sweep, JacobiansToTheBeginningEqualCentralDifferences) {
   };
   constexpr double step = 1e-5;
   for (int i = 0; i < ix::size; ++i) {
-    const Eigen::Matrix<double, 36, 1> slope = (errors(step * Vector18::Unit(i)) - errors(-step * Vector18::Unit(i))) / (2.0 * step);
+    const Eigen::Matrix<double, 36, 1> slope =
+        (errors(step * Vector18::Unit(i)) - errors(-step * Vector18::Unit(i))) / (2.0 * step);
     EXPECT_LT((slope.head<18>() - motion.sweep.J_estimate_begin.col(i)).norm(), 2e-4) << i;
     EXPECT_LT((slope.tail<18>() - motion.J_end_begin.col(i)).norm(), 1e-6) << i;
   }

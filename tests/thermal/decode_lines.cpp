@@ -12,8 +12,8 @@ namespace {
 
 using namespace pllit;
 using Eigen::Vector2f;
-using pllit::test::LineMap;
 using pllit::test::line_map_of;
+using pllit::test::LineMap;
 using pllit::test::Segment;
 
 const cv::Size kImage(320, 256);
@@ -29,12 +29,14 @@ float distance_px(const LineSegment& line, const Segment& truth) {
 void expect_exactly(const std::vector<LineSegment>& lines, std::span<const Segment> truth, float least_px) {
   EXPECT_EQ(lines.size(), truth.size());
   for (const Segment& segment : truth)
-    EXPECT_TRUE(std::ranges::any_of(lines, [&](const LineSegment& line) { return distance_px(line, segment) < least_px; }))
+    EXPECT_TRUE(
+        std::ranges::any_of(lines, [&](const LineSegment& line) { return distance_px(line, segment) < least_px; }))
         << "from " << segment.a.transpose() << " to " << segment.b.transpose();
 }
 
 TEST(DecodeLines, FindsSegmentsOfAnyDirectionToAFractionOfAPixel) {
-  const std::vector<Segment> truth{{{20, 30}, {200, 30}}, {{300, 40}, {300, 220}}, {{30, 240}, {180, 60}}, {{210, 70}, {280, 230}}};
+  const std::vector<Segment> truth{
+      {{20, 30}, {200, 30}}, {{300, 40}, {300, 220}}, {{30, 240}, {180, 60}}, {{210, 70}, {280, 230}}};
   expect_exactly(decode_lines(line_map_of(truth, 320, 256).view(), kImage, {}), truth, 0.7F);
 }
 

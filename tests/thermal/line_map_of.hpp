@@ -1,4 +1,5 @@
-// The line map that a perfect network would give for known segments, cell by cell: models/targets.py says the same in Python.
+// The line map that a perfect network would give for known segments, cell by cell: models/targets.py says the same in
+// Python.
 #pragma once
 
 #include <cmath>

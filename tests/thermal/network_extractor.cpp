@@ -60,7 +60,8 @@ double covered(const cv::Point2f& a, const cv::Point2f& b, const std::vector<Lin
     near += std::ranges::any_of(lines, [&](const LineSegment& line) {
       const Vector2f along = (line.end_px - line.start_px).normalized(), offset = at - line.start_px;
       const float t = along.dot(offset);
-      return t > -2.0F && t < line.length_px() + 2.0F && std::abs(along.x() * offset.y() - along.y() * offset.x()) < 2.0F &&
+      return t > -2.0F && t < line.length_px() + 2.0F &&
+             std::abs(along.x() * offset.y() - along.y() * offset.x()) < 2.0F &&
              std::abs(along.dot(Vector2f(b.x - a.x, b.y - a.y).normalized())) > 0.98F;
     });
   }
@@ -149,7 +150,8 @@ TEST(NetworkExtractor, SaysTheSameForAnyNumberOfThreads) {
 
 TEST(NetworkExtractor, RefusesImagesThatAreNotGreyOrTooSmall) {
   const auto extractor = shipped();
-  for (const cv::Mat& image : {cv::Mat(64, 64, CV_8UC3), cv::Mat(64, 64, CV_16UC1), cv::Mat(15, 64, CV_8UC1), cv::Mat()}) {
+  for (const cv::Mat& image :
+       {cv::Mat(64, 64, CV_8UC3), cv::Mat(64, 64, CV_16UC1), cv::Mat(15, 64, CV_8UC1), cv::Mat()}) {
     const auto features = extractor->extract(image);
     ASSERT_FALSE(features);
     EXPECT_EQ(features.error().kind, Error::Kind::input);
@@ -200,7 +202,8 @@ TEST_F(BadModels, OfAnotherNetworkAreRefusedWithTheDifference) {
 TEST(BrighterSide, LiesToTheLeftOfTheWayAlongALine) {
   cv::Mat grey(64, 64, CV_8UC1, cv::Scalar(50));
   grey.rowRange(0, 32) = 200;
-  std::vector<LineSegment> lines{{.start_px = {50, 31.5F}, .end_px = {10, 31.5F}}, {.start_px = {10, 31.5F}, .end_px = {50, 31.5F}}};
+  std::vector<LineSegment> lines{{.start_px = {50, 31.5F}, .end_px = {10, 31.5F}},
+                                 {.start_px = {10, 31.5F}, .end_px = {50, 31.5F}}};
   turn_brighter_side_left(grey, lines);
   for (const LineSegment& line : lines) EXPECT_LT(line.start_px.x(), line.end_px.x());
 }

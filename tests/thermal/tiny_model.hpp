@@ -27,8 +27,8 @@ inline std::string float_tensor(std::string_view name, const std::vector<int>& s
 inline std::string tiny_model(std::string_view input, std::string_view output, const std::vector<int>& shape) {
   using namespace onnx_bytes;
   const std::string node = block(1, input) + block(2, output) + block(4, "Identity");
-  const std::string graph = block(1, node) + block(2, "g") + block(11, float_tensor(input, shape)) +
-                            block(12, float_tensor(output, shape));
+  const std::string graph =
+      block(1, node) + block(2, "g") + block(11, float_tensor(input, shape)) + block(12, float_tensor(output, shape));
   return number(1, 8) + block(7, graph) + block(8, number(2, 17));
 }
 

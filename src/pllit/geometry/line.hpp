@@ -10,7 +10,7 @@ namespace pllit {
 /// A line of unit direction d and moment n = p x d for any point p on it (the paper's "Spatiotemporal Explicit
 /// Structural Constraints"), in the frame that its name tells: line_W.
 struct Line3 {
-  Vector3d moment = Vector3d::Zero();        ///< m
+  Vector3d moment = Vector3d::Zero();  ///< m
   Vector3d direction = Vector3d::UnitX();
 
   static Line3 through(const Vector3d& p, const Vector3d& direction) {

@@ -1,8 +1,8 @@
 // Fewer points, evenly spread.
 #pragma once
 
-#include "pllit/lidar/deskew.hpp"
 #include "pllit/geometry/voxel_table.hpp"
+#include "pllit/lidar/deskew.hpp"
 
 namespace pllit {
 

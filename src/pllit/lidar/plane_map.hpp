@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "pllit/lidar/deskew.hpp"
 #include "pllit/geometry/voxel_table.hpp"
+#include "pllit/lidar/deskew.hpp"
 
 namespace pllit {
 

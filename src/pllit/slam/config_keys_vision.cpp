@@ -10,15 +10,16 @@ void list_thermal(Section section, VisionConfig& config) {
 }
 
 void list_features(Section section, VisionConfig& config) {
-  section.add(PLLIT_KEY(model), "What finds points and lines: classical, or the file of a network (models/pl_net.onnx).");
+  section.add(PLLIT_KEY(model),
+              "What finds points and lines: classical, or the file of a network (models/pl_net.onnx).");
   section.add(PLLIT_KEY(provider), "Execution provider of a network: cpu, or cuda, tensorrt where they are installed.");
 }
 
 void list_vision(Section section, VisionConfig& config) {
   section.add(PLLIT_KEY(threads), "Threads for a network.", "", {1.0, 64.0});
   section.add("image_spacing_s", config.image_spacing, "Images that follow sooner are left out.", "s", {0.0, 10.0});
-  section.add(PLLIT_KEY(T_I_C_turn_deg), "How well the camera's attitude on the rig is known, one sigma; it is refined.",
-              "deg", {1e-4, 20.0});
+  section.add(PLLIT_KEY(T_I_C_turn_deg),
+              "How well the camera's attitude on the rig is known, one sigma; it is refined.", "deg", {1e-4, 20.0});
   section.add(PLLIT_KEY(T_I_C_shift_m), "How well its place on the rig is known, one sigma; it is refined.", "m",
               {1e-5, 1.0});
   section.add(PLLIT_KEY(depth_window_s), "LiDAR points that give features their depth are at most so old.", "s",

@@ -175,8 +175,9 @@ void Odometry::extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts
   if (unmatched_ > 0) return;  // a pose that does not fit the map must not enter it
   last_match_ = estimate_.mean.time;
   drift_.move_to(estimate_.mean.p_W);
-  if (facts.matched) drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points,
-                                       unobserved_shifts(unobserved_));
+  if (facts.matched)
+    drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points,
+                    unobserved_shifts(unobserved_));
   map_.insert(points, T_W_I);
   map_.slide(estimate_.mean.p_W);
 }

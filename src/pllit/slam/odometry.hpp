@@ -63,8 +63,8 @@ class Odometry {
   Estimate estimate_;
   std::unique_ptr<Vision> vision_;
   DegenerateDirections unobserved_;  ///< of the last scan
-  Time last_match_, last_held_;  ///< by a scan; by an image, where the scan does not hold the pose
-  int unmatched_ = 0;  ///< scans in a row
+  Time last_match_, last_held_;      ///< by a scan; by an image, where the scan does not hold the pose
+  int unmatched_ = 0;                ///< scans in a row
 };
 
 /// Covariance of the pose of `b` seen from `a` (theta, p in W, about a's position): what the map walked between them

@@ -24,8 +24,7 @@ double cosine_of_corner(const Camera& camera) {
 Matrix6 camera_covariance(const VisionConfig& config) {
   const double turn_rad = config.T_I_C_turn_deg * M_PI / 180.0;
   Vector6 variances;
-  variances << Vector3d::Constant(turn_rad * turn_rad),
-      Vector3d::Constant(config.T_I_C_shift_m * config.T_I_C_shift_m);
+  variances << Vector3d::Constant(turn_rad * turn_rad), Vector3d::Constant(config.T_I_C_shift_m * config.T_I_C_shift_m);
   return variances.asDiagonal();
 }
 

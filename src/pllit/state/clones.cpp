@@ -79,10 +79,7 @@ struct Unknowns {
 }  // namespace
 
 Clones with_unknown(const SE3& pose, const Matrix6& covariance) {
-  return {.poses = {pose},
-          .with_state = MatrixXd::Zero(ix::size, kPose),
-          .covariance = covariance,
-          .estimated = 1};
+  return {.poses = {pose}, .with_state = MatrixXd::Zero(ix::size, kPose), .covariance = covariance, .estimated = 1};
 }
 
 void add_clone(Clones& clones, const Estimate& estimate) {

@@ -44,9 +44,10 @@ struct JointUpdate {
   bool converged = false;
 };
 
-/// As iterated_update, for measurements that relate the state to earlier poses: the gain is the one of the joint problem
-/// and is given to the state and the unknown poses. Measurements whose cost the steps do not lower return the prior.
-/// `along`: orthonormal columns; then the state's gain is kept to them, whatever the sensor says of other directions.
+/// As iterated_update, for measurements that relate the state to earlier poses: the gain is the one of the joint
+/// problem and is given to the state and the unknown poses. Measurements whose cost the steps do not lower return the
+/// prior. `along`: orthonormal columns; then the state's gain is kept to them, whatever the sensor says of other
+/// directions.
 using StateDirections = Eigen::Matrix<double, error_index::size, Eigen::Dynamic>;
 JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const LinearizeJoint& linearize,
                             const FilterConfig& config, const std::optional<StateDirections>& along = std::nullopt);

@@ -19,7 +19,8 @@ using Linearize = std::function<NormalEquations(const NavState&)>;
 struct UpdateResult {
   Estimate posterior;
   NormalEquations last;  ///< the sums at the last linearisation point
-  /// Error of the posterior by error of the prior: what a third party's errors, correlated with the prior's, go through.
+  /// Error of the posterior by error of the prior: what a third party's errors, correlated with the prior's, go
+  /// through.
   Matrix18 J_posterior_prior = Matrix18::Identity();
   int iterations = 0;
   bool converged = false;

@@ -223,8 +223,7 @@ Propagation propagate(const Estimate& from, std::span<const ImuSample> imu, Time
   }
   symmetrise(now.covariance);
   result.J_end_begin = sweep.J_error_begin();
-  result.sweep = begin < until ? sweep.seen_from(now)
-                               : SweepPrediction{now, now.covariance, sweep.J_error_begin()};
+  result.sweep = begin < until ? sweep.seen_from(now) : SweepPrediction{now, now.covariance, sweep.J_error_begin()};
   // A last node at the end, so that the path reaches it; it goes on as the one before.
   PathNode last = node_of(now.mean, Vector3d::Zero(), Vector3d::Zero());
   if (!result.path.nodes.empty()) {

@@ -13,12 +13,12 @@ struct Corner {
 };
 
 struct CornerConfig {
-  double blur_px = 1.0;           ///< sigma, against the sensor's noise
-  int contrast_window_px = 33;    ///< side of the square whose contrast is divided out
-  double noise_floors = 4.0;      ///< contrast of so many times the image's noise counts as none
-  int window_px = 5;              ///< side of the square over which gradients are summed
+  double blur_px = 1.0;          ///< sigma, against the sensor's noise
+  int contrast_window_px = 33;   ///< side of the square whose contrast is divided out
+  double noise_floors = 4.0;     ///< contrast of so many times the image's noise counts as none
+  int window_px = 5;             ///< side of the square over which gradients are summed
   double least_strength = 0.03;  ///< squared normalised contrast a pixel
-  int margin_px = 6;              ///< nothing nearer to the image's border
+  int margin_px = 6;             ///< nothing nearer to the image's border
 };
 
 /// Standard deviation of an image's white noise, grey levels, by the median response to a mask that leaves out planes

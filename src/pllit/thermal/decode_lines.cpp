@@ -140,7 +140,8 @@ Region grown(const Votes& votes, std::size_t seed, std::vector<bool>& used, cons
   return region;
 }
 
-/// Where the line ends in the direction `sign`: the last foot, corrected by what the votes near it say, the nearest most.
+/// Where the line ends in the direction `sign`: the last foot, corrected by what the votes near it say, the nearest
+/// most.
 float end_of(const Region& region, const Votes& votes, float sign) {
   const Vector2f along = sign * region.line.direction();
   float last = -1e9F;
@@ -175,8 +176,7 @@ float moved_to_junction(const Line& line, float end, const std::vector<Junction>
 }
 
 Vector2f within(const Vector2f& p, const cv::Size& image) {
-  return p.cwiseMax(0.0F).cwiseMin(
-      Vector2f(static_cast<float>(image.width - 1), static_cast<float>(image.height - 1)));
+  return p.cwiseMax(0.0F).cwiseMin(Vector2f(static_cast<float>(image.width - 1), static_cast<float>(image.height - 1)));
 }
 
 /// One line through both where one goes on or covers the other; nothing where they are two lines.
@@ -235,8 +235,8 @@ std::vector<Junction> decode_junctions(const MapView& map, const cv::Size& image
     for (int column = 0; column < map.columns; ++column) {
       const float score = map.at(junction, row, column);
       if (score < static_cast<float>(least_score) || score < best_around(row, column)) continue;
-      const Vector2f at = centre_px(row, column) +
-                          Vector2f(map.at(junction_x, row, column), map.at(junction_y, row, column));
+      const Vector2f at =
+          centre_px(row, column) + Vector2f(map.at(junction_x, row, column), map.at(junction_y, row, column));
       if (at.x() <= static_cast<float>(image.width - 1) && at.y() <= static_cast<float>(image.height - 1))
         junctions.push_back({at, score});
     }
@@ -284,7 +284,8 @@ std::vector<LineSegment> decode_lines(const MapView& map, const cv::Size& image,
       segments.push_back(segment);
   }
   std::vector<LineSegment> lines = without_duplicates(std::move(segments), map, config);
-  std::erase_if(lines, [&](const LineSegment& s) { return s.length_px() < static_cast<float>(config.least_length_px); });
+  std::erase_if(lines,
+                [&](const LineSegment& s) { return s.length_px() < static_cast<float>(config.least_length_px); });
   constexpr float kLong_px = 20.0F;
   for (LineSegment& line : lines)
     line.score = std::min(line_support(map, line), 1.0F) * line.length_px() / (line.length_px() + kLong_px);

@@ -16,10 +16,10 @@ struct LineDecoding {
   double grow_px = 1.5;           ///< and feet that lie on it to this
   double least_junction = 0.15;
   double match_along_px = 6.0, match_across_px = 3.0;  ///< an end this near to a junction is moved there
-  double least_support = 0.5;     ///< mean agreement of the field along the segment, 0 to 1
+  double least_support = 0.5;                          ///< mean agreement of the field along the segment, 0 to 1
   double least_length_px = 16.0;
   double merge_deg = 3.0, merge_px = 2.0, merge_gap_px = 8.0;  ///< pieces of one line
-  int most = 100;                 ///< the best: by support and length
+  int most = 100;                                              ///< the best: by support and length
 };
 
 struct Junction {
@@ -35,8 +35,8 @@ std::vector<Junction> decode_junctions(const MapView& lines, const cv::Size& ima
 /// against the field and freed of near duplicates. Only the `image` in the upper left of the map counts.
 std::vector<LineSegment> decode_lines(const MapView& lines, const cv::Size& image, const LineDecoding& config);
 
-/// How well the field agrees with a segment, 0 to 1: over places along it, attraction times how well the foot named there
-/// lies on the segment and is square to it.
+/// How well the field agrees with a segment, 0 to 1: over places along it, attraction times how well the foot named
+/// there lies on the segment and is square to it.
 float line_support(const MapView& lines, const LineSegment& segment);
 
 }  // namespace pllit

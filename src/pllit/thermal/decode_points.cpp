@@ -59,7 +59,8 @@ cv::Mat sample_descriptors(const MapView& descriptors, const std::vector<Corner>
     Eigen::Map<Eigen::VectorXf> row(rows.ptr<float>(static_cast<int>(i)), descriptors.channels);
     for (int channel = 0; channel < descriptors.channels; ++channel) {
       const auto along_x = [&](int map_row) {
-        return std::lerp(descriptors.at(channel, map_row, x.low), descriptors.at(channel, map_row, x.high), x.share_high);
+        return std::lerp(descriptors.at(channel, map_row, x.low), descriptors.at(channel, map_row, x.high),
+                         x.share_high);
       };
       row[channel] = std::lerp(along_x(y.low), along_x(y.high), y.share_high);
     }

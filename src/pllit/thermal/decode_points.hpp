@@ -21,7 +21,8 @@ struct PointDecoding {
 /// `image` in the upper left of the map counts: the rest pads it.
 std::vector<Corner> decode_points(const cv::Mat& scores, const cv::Size& image, const PointDecoding& config);
 
-/// Descriptors at places in pixels, interpolated between cells of kDescriptorStride_px: CV_32FC1, a row of unit length each.
+/// Descriptors at places in pixels, interpolated between cells of kDescriptorStride_px: CV_32FC1, a row of unit length
+/// each.
 cv::Mat sample_descriptors(const MapView& descriptors, const std::vector<Corner>& points);
 
 }  // namespace pllit

@@ -13,8 +13,8 @@ namespace pllit {
 
 /// How far a feature is, from LiDAR points around its ray.
 struct FeatureDepth {
-  double range_m = 0.0;        ///< along the ray
-  double sigma_m = 0.0;        ///< standard deviation of that
+  double range_m = 0.0;                    ///< along the ray
+  double sigma_m = 0.0;                    ///< standard deviation of that
   Vector3d normal_C = -Vector3d::UnitZ();  ///< unit, of the surface, towards the camera
 };
 
@@ -24,9 +24,9 @@ struct Keyframe {
   Time time{};
   SE3 T_W_C = SE3::Identity();
   Features features{};
-  std::vector<float> greys{};                       ///< calibrated, at the points
-  cv::Mat greys_around{};                           ///< calibrated, at the points and around them (photometric_chain.hpp)
-  std::vector<std::optional<FeatureDepth>> depths{};///< of the points; nothing where the LiDAR saw none
+  std::vector<float> greys{};  ///< calibrated, at the points
+  cv::Mat greys_around{};      ///< calibrated, at the points and around them (photometric_chain.hpp)
+  std::vector<std::optional<FeatureDepth>> depths{};  ///< of the points; nothing where the LiDAR saw none
 };
 
 struct PointMatch {

@@ -57,7 +57,8 @@ std::string difference(const Ort::Session& session) {
   if (session.GetInputCount() != 1 || session.GetOutputCount() != kOutputs.size())
     return std::format("has {} inputs and {} outputs, not 1 and {}", session.GetInputCount(), session.GetOutputCount(),
                        kOutputs.size());
-  const auto differs = [](const std::string& name, const char* wanted, const Ort::TypeInfo& type, std::int64_t channels) {
+  const auto differs = [](const std::string& name, const char* wanted, const Ort::TypeInfo& type,
+                          std::int64_t channels) {
     if (name != wanted) return std::format("has '{}' where '{}' belongs", name, wanted);
     if (type.GetONNXType() != ONNX_TYPE_TENSOR) return std::format("'{}' is no tensor", name);
     const auto tensor = type.GetTensorTypeAndShapeInfo();
@@ -66,7 +67,8 @@ std::string difference(const Ort::Session& session) {
       return std::format("'{}' is not made of 1 x {} x height x width floats", name, channels);
     return std::string();
   };
-  std::string wrong = differs(session.GetInputNameAllocated(0, allocator).get(), kInput, session.GetInputTypeInfo(0), 1);
+  std::string wrong =
+      differs(session.GetInputNameAllocated(0, allocator).get(), kInput, session.GetInputTypeInfo(0), 1);
   for (std::size_t i = 0; i < kOutputs.size() && wrong.empty(); ++i)
     wrong = differs(session.GetOutputNameAllocated(i, allocator).get(), kOutputs[i], session.GetOutputTypeInfo(i),
                     kChannels[i]);
@@ -116,7 +118,8 @@ NetworkExtractor::NetworkExtractor(NetworkConfig config, std::unique_ptr<Session
     : config_(std::move(config)),
       session_(std::move(session)),
       name_(std::format("network {}{} on {}", config_.model.filename().string(),
-                        config_.place_points == NetworkConfig::Points::corners ? " at corners" : "", config_.provider)) {}
+                        config_.place_points == NetworkConfig::Points::corners ? " at corners" : "",
+                        config_.provider)) {}
 
 NetworkExtractor::~NetworkExtractor() = default;
 
@@ -169,8 +172,8 @@ Expected<Features> NetworkExtractor::extract(const cv::Mat& grey) {
     turn_brighter_side_left(grey, features.lines);
     return features;
   } catch (const Ort::Exception& error) {
-    return failure(std::format("{}: ONNX Runtime failed on an image of {} x {}: {}", name_, grey.cols, grey.rows,
-                               error.what()));
+    return failure(
+        std::format("{}: ONNX Runtime failed on an image of {} x {}: {}", name_, grey.cols, grey.rows, error.what()));
   }
 }
 

@@ -22,18 +22,21 @@ struct MapView {
 inline constexpr int kDescriptorStride_px = 8;
 inline constexpr int kDescriptorSize = 64;
 
-/// The attraction field (after Xue et al., HAWP, 2020): each cell within 10 px of a segment's interior names the nearest point of
-/// that segment, its foot, and how far the segment reaches from there.
+/// The attraction field (after Xue et al., HAWP, 2020): each cell within 10 px of a segment's interior names the
+/// nearest point of that segment, its foot, and how far the segment reaches from there.
 namespace line_map {
 inline constexpr int kStride_px = 4;
 inline constexpr int kChannels = 9;
 enum Channel : int {
   attraction,  ///< 0 to 1: whether there is a segment near
   distance,    ///< px to the foot
-  direction_x, direction_y,  ///< towards the foot, of any length
-  end_ahead, end_behind,     ///< reach t along the quarter turn (x towards y) of the direction, and against it, as atan(t / 16 px)
-  junction,                  ///< 0 to 1: whether a segment ends in this cell
-  junction_x, junction_y     ///< where, px from the cell's centre
+  direction_x,
+  direction_y,  ///< towards the foot, of any length
+  end_ahead,
+  end_behind,  ///< reach t along the quarter turn (x towards y) of the direction, and against it, as atan(t / 16 px)
+  junction,    ///< 0 to 1: whether a segment ends in this cell
+  junction_x,
+  junction_y  ///< where, px from the cell's centre
 };
 inline constexpr float kEndScale_px = 16.0F;
 

@@ -11,11 +11,11 @@ namespace pllit {
 
 /// A point of an earlier keyframe seen again.
 struct PointObservation {
-  std::size_t keyframe = 0;       ///< index of the keyframe among the poses that the filter keeps
-  Eigen::Vector3d p_K_m;          ///< the point in the camera frame of that keyframe, at its LiDAR depth
-  double sigma_ray_m = 0.0;       ///< standard deviation of that depth, along the ray
-  Eigen::Vector2d observed_px;   ///< in the image now, as seen (distorted)
-  double line_px = -1.0;          ///< distance to the matched line that it lies on in both images; negative: on none
+  std::size_t keyframe = 0;     ///< index of the keyframe among the poses that the filter keeps
+  Eigen::Vector3d p_K_m;        ///< the point in the camera frame of that keyframe, at its LiDAR depth
+  double sigma_ray_m = 0.0;     ///< standard deviation of that depth, along the ray
+  Eigen::Vector2d observed_px;  ///< in the image now, as seen (distorted)
+  double line_px = -1.0;        ///< distance to the matched line that it lies on in both images; negative: on none
 };
 
 /// A line of the map seen again.

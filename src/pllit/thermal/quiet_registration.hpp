@@ -7,9 +7,10 @@
 
 namespace pllit {
 
-/// While one lives, std::cerr is held back; its end passes on all but the lines "Schema error: Trying to register …" and the
-/// empty ones between them. Debian links ONNX Runtime to a libonnx that has registered its operators already, so the first
-/// environment of a process registers each a second time and says so 1,200 times. Not for two threads at once.
+/// While one lives, std::cerr is held back; its end passes on all but the lines "Schema error: Trying to register …"
+/// and the empty ones between them. Debian links ONNX Runtime to a libonnx that has registered its operators already,
+/// so the first environment of a process registers each a second time and says so 1,200 times. Not for two threads at
+/// once.
 class QuietRegistration {
  public:
   QuietRegistration() : terminal_(std::cerr.rdbuf(held_.rdbuf())) {}

@@ -57,9 +57,8 @@ class Sums {
     const Matrix2d noise = sigma_px * sigma_px * Matrix2d::Identity() + residual.model_px2;
     const Matrix2d information = noise.inverse();
     const double squared = residual.r_px.dot(information * residual.r_px);
-    const double beyond = search_.size() == 0
-                              ? squared
-                              : residual.r_px.dot((noise + searched(blocks)).inverse() * residual.r_px);
+    const double beyond =
+        search_.size() == 0 ? squared : residual.r_px.dot((noise + searched(blocks)).inverse() * residual.r_px);
     if (const double gate2 = config_.gate * config_.gate; beyond > gate2) {
       equations_.cost += cauchy(squared * gate2 / beyond, config_.loss).cost;
       return;
