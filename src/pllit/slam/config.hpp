@@ -13,6 +13,7 @@
 #include "pllit/sensor/rig.hpp"
 #include "pllit/slam/drift.hpp"
 #include "pllit/slam/health.hpp"
+#include "pllit/slam/thermography_config.hpp"
 #include "pllit/slam/vision_config.hpp"
 #include "pllit/state/iterated_update.hpp"
 #include "pllit/state/propagation.hpp"
@@ -79,6 +80,7 @@ struct Config {
   HealthConfig health;
   VisionConfig vision;
   LoopConfig loop;
+  ThermographyConfig thermography;
 };
 
 /// Equal in every key.
