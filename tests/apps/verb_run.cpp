@@ -96,7 +96,7 @@ TEST_F(RunVerb, RefusesWrongInputWithExitCodeTwoAndLeavesNothingBehind) {
   const std::string empty = write("empty.bag", "");
   const std::string text = write("text.bag", "no recording");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-      {{path("absent.bag")}, "absent.bag does not exist"},
+      {{path("absent.bag")}, "absent.bag' does not exist"},
       {{empty}, "is empty"},
       {{text}, "not a ROS 1 bag"},
       {{"sim:box_rom"}, "did you mean box_room"},

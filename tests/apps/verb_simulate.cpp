@@ -45,7 +45,7 @@ TEST_F(Simulate, WritesFramesWithWhatTheyTrulyShow) {
     for (const char* key : {"grey", "counts", "depth"})
       EXPECT_TRUE(read(path("f/" + frame[key].get<std::string>())).starts_with("\x89PNG")) << key;
     const auto edges = nlohmann::json::parse(read(path("f/" + frame["edges"].get<std::string>())))["edges"];
-    EXPECT_GT(edges.size(), 20U);
+    EXPECT_GT(edges.size(), 10U);
     EXPECT_GE(edges[0]["line_px"].size(), 2U);
     EXPECT_FALSE(frame.contains("temperature"));
   }
@@ -62,7 +62,7 @@ TEST_F(Simulate, LeavesAReadableBagAfterCtrlC) {
   const auto [exit_code, out, err] = finished(process);
   ASSERT_TRUE(running) << err;
   EXPECT_EQ(exit_code, 1);
-  EXPECT_THAT(err, HasSubstr("interrupted; the bag holds what was made so far"));
+  EXPECT_THAT(err, HasSubstr("interrupted; what was made so far is kept"));
   const auto doctor = run({"doctor", bag, "--config", "hilti2022"});
   EXPECT_NE(doctor.exit_code, 1) << doctor.err;
   EXPECT_THAT(doctor.out, testing::Not(HasSubstr("has no complete index")));

@@ -94,7 +94,7 @@ TEST(JointUpdate, EqualsTheSchmidtGainOnALinearSensor) {
   const MatrixXd posterior = kept * P * kept.transpose() + sigma * sigma * K * K.transpose();
   const MatrixXd claimed = joint_covariance(update.posterior, update.clones);
   EXPECT_LT((claimed - posterior).bottomRightCorner(27, 27).norm(), 1e-6) << "but for the turn of the tangent space";
-  EXPECT_EQ(update.clones.covariance, joint.clones.covariance);
+  EXPECT_LT((update.clones.covariance - joint.clones.covariance).norm(), 1e-12);
 }
 
 TEST(JointUpdate, KnowsTheWayFromAClonePreciselyHoweverUnsureBothAre) {
@@ -118,7 +118,7 @@ TEST(JointUpdate, MovesTheStateAlongGivenDirectionsOnly) {
   Random random(8);
   const Joint joint = random_joint(random);
   const Vector3d predicted = joint.estimate.mean.p_W - joint.clones.poses[1].translation();
-  const auto sensor = relative_position(joint, predicted + Vector3d(0.05, 0.05, 0.05), 0.01);
+  const auto sensor = relative_position(joint, predicted + Vector3d(0.0, 0.05, 0.0), 0.01);
   StateDirections along = StateDirections::Zero(ix::size, 1);
   along(ix::p + 1, 0) = 1.0;
   const auto update = iterated_update(joint.estimate, joint.clones, sensor, FilterConfig{}, along);

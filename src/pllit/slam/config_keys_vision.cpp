@@ -6,16 +6,15 @@ namespace pllit {
 void list_thermal(Section section, VisionConfig& config) {
   section.add_switch(PLLIT_KEY(enabled), "Refine the LiDAR's pose with the images, thermal or visible.");
   section.add_switch(PLLIT_KEY(photometric), "Calibrate the greys of 8-bit images against gain control.");
-  section.add_switch("weights", config.residuals.weights, "Give points on matched lines more weight.");
 }
 
 void list_features(Section section, VisionConfig& config) {
   section.add(PLLIT_KEY(model),
               "What finds points and lines: classical, or the file of a network (models/pl_net.onnx).");
-  section.add(PLLIT_KEY(provider), "Execution provider of a network: cpu, or cuda, tensorrt where they are installed.");
 }
 
 void list_vision(Section section, VisionConfig& config) {
+  section.add(PLLIT_KEY(provider), "Execution provider of a network: cpu, or cuda, tensorrt where they are installed.");
   section.add(PLLIT_KEY(threads), "Threads for a network.", "", {1.0, 64.0});
   section.add("image_spacing_s", config.image_spacing, "Images that follow sooner are left out.", "s", {0.0, 10.0});
   section.add(PLLIT_KEY(T_I_C_turn_deg),
@@ -38,6 +37,7 @@ void list_vision(Section section, VisionConfig& config) {
               {0.1, 100.0});
   section.add("max_information", config.residuals.max_information,
               "Independent points that an image counts for at most; 0: every one counts.", "", {0.0, 1e6});
+  section.add_switch("weights", config.residuals.weights, "Give points on matched lines more weight.");
   section.add("weight_gain", config.residuals.weight_gain, "Weight of a point on a line (the paper's eta).", "",
               {1.0, 10.0});
   section.add("weight_sigma_px", config.residuals.weight_sigma_px,

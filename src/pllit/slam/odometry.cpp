@@ -112,11 +112,11 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     if (facts.image.used && image_holds(facts.image.information, unobserved_, estimate_.mean.R_W_I))
       last_held_ = packet.end;
   }
+  facts.image.holds = to_seconds(packet.end - last_held_) < config_.health.silent_degraded_s;
   if (packet.scan) {
     extend_map(dense, T_W_scan, facts);
     clock.charge(Stage::map);
   }
-  facts.image.holds = to_seconds(packet.end - last_held_) < config_.health.silent_degraded_s;
   facts.speed_mps = estimate_.mean.v_W.norm();
   facts.since_match_s = to_seconds(packet.end - last_match_);
   facts.longest_imu_gap_s = to_seconds(motion.longest_gap);
@@ -177,7 +177,7 @@ void Odometry::extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts
   drift_.move_to(estimate_.mean.p_W);
   if (facts.matched)
     drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points,
-                    unobserved_shifts(unobserved_));
+                    facts.image.holds ? unobserved_shifts(unobserved_) : Eigen::Matrix3Xd(3, 0));
   map_.insert(points, T_W_I);
   map_.slide(estimate_.mean.p_W);
 }

@@ -1,6 +1,7 @@
 #include "pllit/state/clones.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cassert>
 
 namespace pllit {
@@ -142,8 +143,10 @@ JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const L
     joint = after_gain(P, gain, result.last.H);
     x.move(step);
     for (const Index begin : x.turns()) turn(joint, begin, right_jacobian(step.segment<3>(begin)));
-    result.converged = step.segment<3>(ix::theta).norm() < config.rotation_tolerance_rad &&
-                       step.segment<3>(ix::p).norm() < config.position_tolerance_m;
+    result.converged = std::ranges::all_of(x.turns(), [&](Index begin) {  // each followed by its pose's shift
+      return step.segment<3>(begin).norm() < config.rotation_tolerance_rad &&
+             step.segment<3>(begin + 3).norm() < config.position_tolerance_m;
+    });
   }
   if (linearize(x.state, x.poses).cost > result.first.cost)
     return {.posterior = prior, .clones = clones, .first = result.first, .last = result.last};

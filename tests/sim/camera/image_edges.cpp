@@ -79,12 +79,12 @@ TEST(ImageEdges, WhatHidesTheMiddleOfAnEdgeLeavesTwo) {
 TEST(ImageEdges, DistortionBendsThem) {
   Camera fisheye = pinhole();
   fisheye.distortion = Camera::Distortion::equidistant;
-  TestPlace place = two_walls(3.0, plain_surface(0.0F), plain_surface(3.0F));
+  TestPlace place = two_walls(1.5, plain_surface(0.0F), plain_surface(3.0F));
   const auto edges = edges_seen(place, fisheye);
   ASSERT_EQ(edges.size(), 1U);
   EXPECT_GT(edges[0].line_px.size(), 3U);
   for (double z = -1.2; z < 1.2; z += 0.1) {
-    const Vector2d exact = *fisheye.project(Vector3d(3.0, -z, 4.0));
+    const Vector2d exact = *fisheye.project(Vector3d(1.5, -z, 4.0));
     double nearest_px = 1e9;
     for (std::size_t i = 1; i < edges[0].line_px.size(); ++i) {
       const Vector2d a = edges[0].line_px[i - 1], along = edges[0].line_px[i] - a;
