@@ -4,6 +4,7 @@
 
 #include <format>
 
+#include "findings.hpp"
 #include "program.hpp"
 
 namespace pllit::app {
@@ -66,6 +67,7 @@ std::string summary_text(const Json& json) {
       if (rpe["rmse"].is_number())
         text += std::format("RPE {:>4} m  {:.4f} m = {:.2f} %, yaw {:.3f} deg\n", rpe["delta_m"].get<double>(),
                             rpe["rmse"].get<double>(), rpe["percent"].get<double>(), rpe["yaw_deg"].get<double>());
+  if (json.contains("findings")) text += findings_text(json["findings"]);
   for (const Json& note : json["notes"]) text += "note        " + note.get<std::string>() + "\n";
   return text;
 }

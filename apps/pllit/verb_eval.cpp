@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "findings.hpp"
 #include "pllit/eval/evaluate.hpp"
 #include "pllit/eval/scores_json.hpp"
 #include "pllit/io/tum.hpp"
@@ -15,7 +16,7 @@ namespace pllit::app {
 namespace {
 
 struct Options {
-  std::string truth, estimate;
+  std::string truth, estimate, scene;
   EvaluationConfig evaluation;
   bool json = false;
 };
@@ -50,7 +51,20 @@ std::string json_of(const Scores& scores) {
   return json.dump(2) + "\n";
 }
 
+/// With --findings the one path that is given is a session.
+ExitCode run_findings(const Options& options) {
+  if (!options.estimate.empty()) return report(input_error("eval --findings takes one session, not two paths").error());
+  const auto scores = score_session_findings(options.scene, options.truth, options.evaluation.alignment);
+  if (!scores) return report(scores.error());
+  nlohmann::ordered_json json = {{"schema_version", kSchemaVersion}};
+  json["findings"] = findings_json(*scores);
+  std::fputs((options.json ? json.dump(2) + "\n" : findings_text(json["findings"])).c_str(), stdout);
+  return ExitCode::done;
+}
+
 ExitCode run(const Options& options) {
+  if (!options.scene.empty()) return run_findings(options);
+  if (options.estimate.empty()) return report(input_error("eval needs TRUTH.tum and ESTIMATE.tum").error());
   const auto scores = scores_of(options);
   if (!scores) return report(scores.error());
   std::fputs((options.json ? json_of(*scores) : text_of(*scores)).c_str(), stdout);
@@ -60,10 +74,14 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 Verb add_eval(CLI::App& program) {
-  CLI::App* verb = program.add_subcommand("eval", "Score an estimated trajectory against the true one");
+  CLI::App* verb = program.add_subcommand("eval", "Score an estimated trajectory, or findings, against the truth");
   const auto options = std::make_shared<Options>();
-  verb->add_option("truth", options->truth, "True trajectory")->type_name("TRUTH.tum")->required();
-  verb->add_option("estimate", options->estimate, "Estimated trajectory")->type_name("ESTIMATE.tum")->required();
+  verb->add_option("truth", options->truth, "True trajectory; with --findings the session")
+      ->type_name("TRUTH.tum|SESSION")
+      ->required();
+  verb->add_option("estimate", options->estimate, "Estimated trajectory")->type_name("ESTIMATE.tum");
+  verb->add_option("--findings", options->scene, "Score a session's anomalies against what the simulator put there")
+      ->type_name("F.scene.json");
   const std::map<std::string, Alignment> alignments{
       {"se3", Alignment::se3}, {"yaw", Alignment::yaw}, {"none", Alignment::none}};
   verb->add_option("--align", options->evaluation.alignment,
@@ -77,7 +95,8 @@ Verb add_eval(CLI::App& program) {
   verb->footer(
       "Examples:\n"
       "  pllit eval truth.tum results/latest/trajectory.tum\n"
-      "  pllit eval truth.tum estimate.tum --align yaw --rpe 10 50 100 --json");
+      "  pllit eval truth.tum estimate.tum --align yaw --rpe 10 50 100 --json\n"
+      "  pllit eval --findings a1.scene.json results/latest");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -7,9 +7,11 @@
 #include <stop_token>
 #include <utility>
 
+#include "findings.hpp"
 #include "interrupt.hpp"
 #include "pllit/eval/evaluate.hpp"
 #include "pllit/eval/scores_json.hpp"
+#include "pllit/io/anomalies_file.hpp"
 #include "pllit/io/file.hpp"
 #include "pllit/io/session.hpp"
 #include "pllit/io/tum.hpp"
@@ -32,14 +34,41 @@ struct Options {
   bool json = false;
 };
 
-/// Hands frames to the session: poses and health as they come, points that are new to the map.
-FrameSink session_sink(SessionWriter& session, MapRecorder& map) {
-  return [&session, &map](const FrameEstimate& frame) -> Expected<void> {
+Expected<void> write_anomalies(SessionWriter& session, const Thermography& thermography) {
+  const auto json = anomalies_json(thermography.anomalies(), thermography.config().unit);
+  return session.write_text("anomalies.json", json.dump(2) + "\n");
+}
+
+/// Writes what has been found each time an alarm is raised, so that a kill loses none; and says so.
+Expected<void> tell_alarms(SessionWriter& session, const Thermography& thermography, Time time) {
+  bool raised = false;
+  for (const Anomaly& anomaly : thermography.anomalies()) {
+    if (anomaly.confirmed != time) continue;
+    raised = true;
+    const Vector3d& p_W = anomaly.position_W;
+    spdlog::warn("alarm {}: {} at ({:.2f}, {:.2f}, {:.2f}) m, {:.1f} sigma above normal", anomaly.id,
+                 name_of(anomaly.kind), p_W.x(), p_W.y(), p_W.z(), anomaly.mean_sigmas);
+  }
+  return raised ? write_anomalies(session, thermography) : Expected<void>{};
+}
+
+/// Hands frames to the session: poses and health as they come, points that are new to the map, alarms.
+FrameSink session_sink(SessionWriter& session, MapRecorder& map, const std::optional<Thermography>& thermography) {
+  return [&](const FrameEstimate& frame) -> Expected<void> {
     const NavState& state = frame.posterior.mean;
     if (auto done = session.append_pose({state.time, state.T_W_I()}); !done) return done;
     if (auto done = session.append_health(health_row(frame)); !done) return done;
+    if (thermography)
+      if (auto done = tell_alarms(session, *thermography, state.time); !done) return done;
     return session.append_map(map.new_points(frame));
   };
+}
+
+/// What the thermographic stage leaves behind.
+Expected<void> write_thermography(SessionWriter& session, const Thermography& thermography) {
+  if (auto done = write_anomalies(session, thermography); !done) return done;
+  if (auto done = session.write_cloud("thermal_map.ply", thermography.map().table()); !done) return done;
+  return session.write_cloud("anomalies.ply", thermography.anomaly_points());
 }
 
 nlohmann::ordered_json run_json(const RunSummary& summary, const Options& options, const Config& config,
@@ -79,7 +108,9 @@ class SessionRun {
         truth_(std::move(truth)),
         session_(std::move(session)),
         stop_(std::move(stop)),
-        map_(config.map_file_voxel_m, config.map.radius_m) {}
+        map_(config.map_file_voxel_m, config.map.radius_m) {
+    if (source_.rig.camera && config.vision.enabled) thermography_.emplace(*source_.rig.camera, config.thermography);
+  }
 
   Expected<ExitCode> operator()() {
     if (!source_.truth.empty())
@@ -96,9 +127,10 @@ class SessionRun {
  private:
   Expected<void> run(RunSummary& summary) {
     ProgressBar bar("frames", spdlog::should_log(spdlog::level::info));
-    const RunHooks hooks{.sink = session_sink(session_, map_),
+    const RunHooks hooks{.sink = session_sink(session_, map_, thermography_),
                          .progress = [&](double share) { bar.show(share, summary.frames); },
-                         .stop = stop_};
+                         .stop = stop_,
+                         .thermography = thermography_ ? &*thermography_ : nullptr};
     return run_odometry(*source_.events, source_.rig, config_, hooks, summary);
   }
 
@@ -108,12 +140,14 @@ class SessionRun {
     if (!result) json["error"] = result.error().message;
     const auto scene = source_.scene_json ? write_file(session_.folder() / "scene.json", source_.scene_json() + "\n")
                                           : Expected<void>{};
-    const auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
+    const auto heat = thermography_ ? write_thermography(session_, *thermography_) : Expected<void>{};
+    auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
+    if (scored && heat && thermography_ && source_.scene_json && summary.frames > 1) scored = add_findings(json);
     if (!scored) json["notes"].push_back(scored.error().message);
     const auto written = session_.write_run(json);
     print(json);
     // What stopped the run comes first: a full disk hits these files too.
-    for (const auto* done : {&result, &written, &scene})
+    for (const auto* done : {&result, &written, &scene, &heat})
       if (!*done) return report(done->error());
     if (summary.interrupted) {
       spdlog::warn("interrupted; what was done is in {}", session_.folder().string());
@@ -121,6 +155,14 @@ class SessionRun {
     }
     if (!scored && !options_.truth.empty()) return report(scored.error());
     return summary.was_degraded() ? ExitCode::degraded : ExitCode::done;
+  }
+
+  /// Scores the anomalies against what the simulator put there.
+  Expected<void> add_findings(nlohmann::ordered_json& json) {
+    const auto scores = score_session_findings(session_.folder() / "scene.json", session_.folder(), Alignment::se3);
+    if (!scores) return in_context("scoring the findings", scores.error());
+    json["findings"] = findings_json(*scores);
+    return {};
   }
 
   void print(nlohmann::ordered_json json) const {
@@ -138,6 +180,7 @@ class SessionRun {
   SessionWriter session_;
   std::stop_token stop_;
   MapRecorder map_;
+  std::optional<Thermography> thermography_;  // none without a camera
 };
 
 Expected<ExitCode> run_session(const Options& options) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "pllit/io/anomalies_file.hpp"
 #include "run_program.hpp"
 
 namespace pllit {
@@ -70,6 +71,55 @@ TEST_F(EvalVerb, PrintsATableForPeople) {
   EXPECT_THAT(out, HasSubstr("400 poses matched over 125."));
   EXPECT_THAT(out, HasSubstr("APE"));
   EXPECT_THAT(out, HasSubstr("the path is too short"));
+}
+
+/// A session's anomalies in the world of the walk turned by a right angle, one on the object and one off it.
+class EvalFindings : public EvalVerb {
+ protected:
+  std::string session() const {
+    std::filesystem::create_directory(path("session"));
+    truth();
+    walk("session/odometry.tum", [](double x, double y) { return std::array{-y, x, 0.0}; });
+    Anomaly found{.id = 1, .state = AnomalyState::confirmed};
+    found.position_W = {-4.0, 3.04, 1.0};
+    found.confirmed = Time(std::chrono::milliseconds(1'025'700));
+    Anomaly false_alarm = found;
+    false_alarm.id = 2;
+    false_alarm.position_W = {9.0, 0.0, 1.0};
+    write("session/anomalies.json", anomalies_json(std::vector{found, false_alarm}, IntensityUnit::grey).dump());
+    return path("session");
+  }
+  std::string scene() const {
+    return write("truth.scene.json", R"({"start_s": 1000.0, "objects": [{"name": "kettle", "finding": true,
+      "begins_s": 20.0, "centroid_W": [3.0, 4.0, 1.0], "first_seen_s": 25.0}]})");
+  }
+};
+
+TEST_F(EvalFindings, AreScoredAgainstTheScene) {
+  const auto [exit_code, out, err] = run({"eval", "--findings", scene(), session(), "--json"});
+  ASSERT_EQ(exit_code, 0) << err;
+  const auto json = nlohmann::ordered_json::parse(out);
+  EXPECT_EQ(json.begin().key(), "schema_version");
+  EXPECT_EQ(json["findings"]["objects"], 1);
+  EXPECT_EQ(json["findings"]["found"], 1);
+  EXPECT_EQ(json["findings"]["false_alarms"], 1);
+  EXPECT_NEAR(json["findings"]["position_m"]["max"].get<double>(), 0.04, 1e-3);
+  EXPECT_NEAR(json["findings"]["delay_s"]["max"].get<double>(), 0.7, 1e-3);
+  EXPECT_THAT(run({"eval", "--findings", scene(), session()}).out, HasSubstr("1 of 1 found, 1 false alarms"));
+}
+
+TEST_F(EvalFindings, NeedOneSessionThatHoldsAnomalies) {
+  const auto message = [&](const std::vector<std::string>& arguments) {
+    const auto outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(message({"eval", "--findings", scene(), session(), session()}), HasSubstr("one session"));
+  EXPECT_THAT(message({"eval", truth()}), HasSubstr("ESTIMATE.tum"));
+  const std::string folder = session();
+  std::filesystem::remove(folder + "/anomalies.json");
+  EXPECT_THAT(message({"eval", "--findings", scene(), folder}), HasSubstr("anomalies.json"));
+  EXPECT_THAT(message({"eval", "--findings", truth(), folder}), HasSubstr("is not JSON"));
 }
 
 TEST_F(EvalVerb, RefusesWrongInputWithExitCodeTwo) {

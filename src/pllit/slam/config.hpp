@@ -12,6 +12,7 @@
 #include "pllit/sensor/rig.hpp"
 #include "pllit/slam/drift.hpp"
 #include "pllit/slam/health.hpp"
+#include "pllit/slam/thermography_config.hpp"
 #include "pllit/slam/vision_config.hpp"
 #include "pllit/state/iterated_update.hpp"
 #include "pllit/state/propagation.hpp"
@@ -77,6 +78,7 @@ struct Config {
   DriftConfig drift;
   HealthConfig health;
   VisionConfig vision;
+  ThermographyConfig thermography;
 };
 
 /// Equal in every key.

@@ -204,6 +204,8 @@ KeyList keys_of(Config& config) {
   list(advanced.section("gaps", "What to assume where IMU samples are missing."), config.gaps);
   list(advanced.section("drift", "How the doubt about the map grows."), config.drift);
   list_vision(advanced.section("vision", "How images are matched and believed."), config.vision);
+  list_anomalies(advanced.section("anomalies", "The thermographic map, and what counts as abnormally hot."),
+                 config.thermography);
   list(advanced.section("health", "When a frame is called degraded or lost."), config.health);
   return keys;
 }

@@ -56,5 +56,7 @@ class Section {
 void list_thermal(Section section, VisionConfig& config);
 void list_features(Section section, VisionConfig& config);
 void list_vision(Section section, VisionConfig& config);
+/// The keys of advanced.anomalies.
+void list_anomalies(Section section, ThermographyConfig& config);
 
 }  // namespace pllit

@@ -111,6 +111,8 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     estimate_ = *refined;
     if (facts.image.used && image_holds(facts.image.information, unobserved_, estimate_.mean.R_W_I))
       last_held_ = packet.end;
+    frame.image = packet.image;
+    frame.greys = vision_->curve();
   }
   facts.image.holds = to_seconds(packet.end - last_held_) < config_.health.silent_degraded_s;
   if (packet.scan) {

@@ -22,6 +22,8 @@ struct FrameEstimate {
   Health health;
   FrameFacts facts;
   PointCloud cloud;  ///< the scan's points in I, de-skewed; empty without a scan
+  std::optional<CameraFrame> image = std::nullopt;  ///< of this moment, where images are looked at
+  GreyCurve greys{};                                ///< its photometric calibration
   StageTimes stage_ms{};
 
   /// Covariance of (theta, p) in W against the origin.

@@ -14,6 +14,7 @@ class Run {
         hooks_(hooks),
         summary_(summary),
         assembler_(rig, {.images = vision != nullptr, .image_spacing = config.vision.image_spacing}),
+        rig_(rig),
         odometry_(rig, config, std::move(vision)) {}
 
   Expected<void> to_the_end() {
@@ -67,8 +68,17 @@ class Run {
 
   Expected<void> take(FrameEstimate& frame) {
     frame.stage_ms[static_cast<std::size_t>(Stage::read)] = std::exchange(read_ms_, 0.0);
+    map_heat(frame);
     add_to_summary(frame);
     return hooks_.sink(frame);
+  }
+
+  void map_heat(FrameEstimate& frame) {
+    if (!hooks_.thermography || !frame.image) return;
+    StageClock clock;
+    if (auto input = thermography_input(frame, rig_, odometry_.map())) hooks_.thermography->process(*input);
+    clock.charge(Stage::map);
+    frame.stage_ms[static_cast<std::size_t>(Stage::map)] += clock.times_ms()[static_cast<std::size_t>(Stage::map)];
   }
 
   void add_to_summary(const FrameEstimate& frame) {
@@ -108,6 +118,7 @@ class Run {
   const RunHooks& hooks_;
   RunSummary& summary_;
   PacketAssembler assembler_;
+  const Rig& rig_;
   Odometry odometry_;
   Time first_time_;
   Vector3d last_p_W_ = Vector3d::Zero();

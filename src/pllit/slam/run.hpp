@@ -8,6 +8,7 @@
 
 #include "pllit/base/distribution.hpp"
 #include "pllit/slam/odometry.hpp"
+#include "pllit/slam/thermography.hpp"
 
 namespace pllit {
 
@@ -40,6 +41,7 @@ struct RunHooks {
   FrameSink sink;
   std::function<void(double)> progress = [](double) {};  ///< share of the source, 0 to 1
   std::stop_token stop = {};                             ///< ends the run after the frame in hand, as if the data ended
+  Thermography* thermography = nullptr;                  ///< sees each frame with an image before the sink does
 };
 
 /// Runs to the end of the source. Errors: no start possible, the sink's, or the source's with what came before it

@@ -1,0 +1,66 @@
+// Photometric anchoring: each image's greys are tied to what the map holds of the surfaces that it shows, so that
+// neither the drift of a gain control nor that of the camera is taken for heat.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pllit/map/thermal_map.hpp"
+
+namespace pllit {
+
+/// An image's intensity of a surface, and the map's.
+struct AnchorPair {
+  float now = 0.0F, normal = 0.0F;
+  float radius2 = 0.0F;          ///< squared distance from the middle of the image, 1 in its corners
+  float normal_variance = 0.0F;  ///< of the error of `normal`
+  float weight = 1.0F;           ///< more for what is well known
+};
+
+/// Intensities as they come to those of the map: a straight line, and where a gain control is not one, a polyline added
+/// to it. Increasing.
+struct AnchorCurve {
+  double gain = 1.0, bias = 0.0;
+  double lens = 0.0;  ///< what the image has too much at the squared radius 1, before the rest: vignetting
+  std::vector<double> knots{}, offsets{};  ///< ascending; none for a straight line; constant beyond the ends
+
+  double operator()(double intensity, double radius2 = 0.0) const;
+};
+
+struct AnchorConfig {
+  enum class Shape {
+    bias,    ///< radiometric cameras drift as a whole
+    affine,  ///< linear gain control
+    curve    ///< histogram equalisation
+  };
+  Shape shape = Shape::curve;
+  double loss =
+      12.0;  ///< pairs that differ by more do not count, in the map's unit; narrowed to from four times as much
+  int min_pairs = 150;     ///< inliers, in voxels
+  double min_share = 0.5;  ///< of the pairs that must be inliers
+  int knots = 17;
+};
+
+struct AnchorFit {
+  AnchorCurve curve{};
+  int pairs = 0, inliers = 0;
+  double rms = 0.0;    ///< of the inliers' residuals, in the map's unit
+  bool holds = false;  ///< enough inliers; otherwise the curve is the one before
+};
+
+/// Pairs of an image's observations with voxels that have been seen a few times and that nothing has changed in.
+std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<SurfaceObservation>& observations,
+                                     const Camera& camera);
+/// Squared distance of a pixel from the middle of the image, 1 in its corners.
+double squared_radius(const Eigen::Vector2f& pixel_px, const Camera& camera);
+
+/// Robust fit by reweighted least squares with a loss that narrows (graduated non-convexity: Blake and Zisserman 1987),
+/// from the curve before and from the line that takes the quantiles of all pairs to each other, whichever explains
+/// more. What is seen is regressed on what is known, whose noise is less and is taken into account: the other way round
+/// the noise of every image would flatten the curve, and surfaces learned through it those of the next ones, until
+/// nothing differed any more. Where the surfaces in sight hardly differ, the gain stays near the one before. What is
+/// hot cannot drag the curve: its pairs lie off the one that the others agree on, and because it increases, intensities
+/// above those of all unchanged surfaces stay above.
+AnchorFit anchor_curve(std::span<const AnchorPair> pairs, const AnchorCurve& before, const AnchorConfig& config);
+
+}  // namespace pllit

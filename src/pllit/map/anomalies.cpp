@@ -1,0 +1,216 @@
+#include "pllit/map/anomalies.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pllit {
+namespace {
+
+Eigen::Vector3i cell_of(const WatchedVoxel& watched, double size_m) {
+  return voxel_of(watched.position_W, 1.0 / size_m);
+}
+
+/// Distance from a point to the box that holds an anomaly.
+double distance_m(const Anomaly& anomaly, const Vector3d& p_W) {
+  return ((p_W - anomaly.position_W).cwiseAbs() - 0.5 * anomaly.extent_m).cwiseMax(0.0).norm();
+}
+
+/// Sums over the voxels of one anomaly.
+struct Members {
+  int all = 0, left = 0, hot = 0, known = 0, new_surfaces = 0, lasting = 0;
+  bool seen_hot_now = false;
+  double change = 0.0, sigmas = 0.0, peak_change = 0.0, peak_sigmas = 0.0;
+  Vector3d sum_W = Vector3d::Zero();
+  Matrix3d products = Matrix3d::Zero();
+  Eigen::AlignedBox3d box_W;
+
+  void add(const WatchedVoxel& watched, Time now, double dwell_s) {
+    ++all;
+    left += watched.vacated ? 1 : 0;
+    if (!watched.hot) return;
+    ++hot;
+    known += watched.new_surface ? 0 : 1;
+    new_surfaces += watched.new_surface && !watched.joined ? 1 : 0;
+    lasting += watched.dwell_s() >= dwell_s ? 1 : 0;
+    seen_hot_now = seen_hot_now || watched.last == now;
+    const double in_sigmas = watched.change / watched.sigma;
+    change += watched.change;
+    sigmas += in_sigmas;
+    peak_change = std::max(peak_change, static_cast<double>(watched.peak));
+    peak_sigmas = std::max(peak_sigmas, static_cast<double>(watched.peak / watched.sigma));
+    sum_W += watched.position_W;
+    products += watched.position_W * watched.position_W.transpose();
+    box_W.extend(watched.position_W);
+  }
+};
+
+Members members_of(const Watch& watch, std::uint32_t id, Time now, double dwell_s) {
+  Members members;
+  for (const auto& [key, watched] : watch)
+    if (watched.owner == id) members.add(watched, now, dwell_s);
+  return members;
+}
+
+/// The part of an image that shows an anomaly, with a margin around it.
+std::optional<ImageCrop> crop_of(const Watch& watch, std::uint32_t id, const ThermalView& view, double voxel_m) {
+  constexpr float kMargin_px = 24.0F;
+  Eigen::AlignedBox2f box;
+  for (const SurfaceObservation& observation : view.observations) {
+    const auto found = watch.find(voxel_key(voxel_of(observation.p_W, 1.0 / voxel_m)));
+    if (found != watch.end() && found->second.owner == id && found->second.hot) box.extend(observation.pixel_px);
+  }
+  if (box.isEmpty()) return std::nullopt;
+  const Eigen::Vector2i low = (box.min().array() - kMargin_px).max(0.0F).cast<int>(),
+                        high = (box.max().array() + kMargin_px).cast<int>();
+  return ImageCrop{
+      .time = view.time, .left = low.x(), .top = low.y(), .width = high.x() - low.x(), .height = high.y() - low.y()};
+}
+
+double confidence(const Anomaly& anomaly) {
+  const double contrast = 1.0 - std::exp(-anomaly.mean_sigmas / 4.0), size = 1.0 - std::exp(-anomaly.voxels / 6.0),
+               views = 1.0 - 0.5 / std::max(1, anomaly.views);
+  return contrast * size * views;
+}
+
+}  // namespace
+
+void AnomalyDetector::update(const WatchInput& input, const ThermalView& view) {
+  watch_ = watched(std::move(watch_), input, config_.watch);
+  for (const Cluster& cluster : clusters(input.map)) {
+    if (static_cast<int>(cluster.size()) < config_.min_voxels) continue;
+    const std::uint32_t id = owner_of(cluster, view).anomaly.id;
+    for (const VoxelKey key : cluster) watch_.at(key).owner = id;
+  }
+  for (auto& [id, track] : tracks_) {
+    measure(track, view);
+    settle(track, view.time);
+    if (track.anomaly.last_seen != view.time) continue;
+    const auto crop = crop_of(watch_, id, view, input.map.config().voxel_m);
+    std::optional<ImageCrop>& best = track.anomaly.crop;
+    if (crop && (!best || crop->width * crop->height > best->width * best->height)) best = crop;
+  }
+  drop_vanished(view.time);
+}
+
+std::vector<Anomaly> AnomalyDetector::anomalies() const {
+  std::vector<Anomaly> anomalies;
+  for (const auto& [id, track] : tracks_) anomalies.push_back(track.anomaly);
+  return anomalies;
+}
+
+std::vector<AnomalyDetector::Cluster> AnomalyDetector::clusters(const ThermalMap& map) const {
+  std::map<VoxelKey, std::vector<VoxelKey>> cells;
+  for (const auto& [key, watched] : watch_)
+    if (watched.hot && watched.hits >= map.config().model.hits)
+      cells[voxel_key(cell_of(watched, config_.join_m))].push_back(key);
+  std::vector<Cluster> clusters;
+  while (!cells.empty()) {
+    Cluster cluster;
+    std::vector<VoxelKey> open{cells.begin()->first};
+    while (!open.empty()) {
+      const VoxelKey cell = open.back();
+      open.pop_back();
+      const auto node = cells.extract(cell);
+      if (node.empty()) continue;
+      cluster.insert(cluster.end(), node.mapped().begin(), node.mapped().end());
+      for (int i = 0; i < 27; ++i) {
+        const VoxelKey next = voxel_key(voxel_of_key(cell) + Eigen::Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+        if (cells.contains(next)) open.push_back(next);
+      }
+    }
+    std::ranges::sort(cluster);
+    clusters.push_back(std::move(cluster));
+  }
+  return clusters;
+}
+
+/// The anomaly that a cluster belongs to: the oldest of those whose voxels it holds, which takes in the others; else
+/// one that it lies next to; else a new one.
+AnomalyDetector::Track& AnomalyDetector::owner_of(const Cluster& cluster, const ThermalView& view) {
+  constexpr double kNext_m = 0.15;
+  std::uint32_t id = 0;
+  Vector3d sum_W = Vector3d::Zero();
+  for (const VoxelKey key : cluster) {
+    const WatchedVoxel& watched = watch_.at(key);
+    sum_W += watched.position_W;
+    if (watched.owner != 0 && (id == 0 || watched.owner < id)) id = watched.owner;
+  }
+  const Vector3d centroid_W = sum_W / static_cast<double>(cluster.size());
+  for (const VoxelKey key : cluster) {
+    const std::uint32_t other = watch_.at(key).owner;
+    if (other == 0 || other == id) continue;
+    for (auto& [k, watched] : watch_)
+      if (watched.owner == other) watched.owner = id;
+    tracks_.erase(other);
+  }
+  if (id == 0)
+    for (const auto& [number, track] : tracks_)
+      if (distance_m(track.anomaly, centroid_W) < kNext_m) {
+        id = number;
+        break;
+      }
+  if (id != 0) return tracks_.at(id);
+  id = next_id_++;
+  Track track{.anomaly = {.id = id, .first_seen = view.time}, .last_viewpoint_W = view.viewpoint_W};
+  track.anomaly.position_W = centroid_W;
+  track.anomaly.views = 1;
+  return tracks_.emplace(id, track).first->second;
+}
+
+void AnomalyDetector::measure(Track& track, const ThermalView& view) {
+  constexpr double kViewSpacing_m = 0.25;
+  Anomaly& anomaly = track.anomaly;
+  const Members members = members_of(watch_, anomaly.id, view.time, config_.dwell_s);
+  if (members.hot == 0 || !members.seen_hot_now) return;
+  const double n = members.hot;
+  anomaly.kind = members.new_surfaces > members.known ? AnomalyKind::new_hot : AnomalyKind::heated;
+  anomaly.position_W = members.sum_W / n;
+  const Matrix3d scatter = members.products / n - anomaly.position_W * anomaly.position_W.transpose();
+  anomaly.covariance_m2 = scatter / n + config_.registration_m * config_.registration_m * Matrix3d::Identity();
+  anomaly.extent_m = members.box_W.sizes();
+  anomaly.mean_change = members.change / n;
+  anomaly.mean_sigmas = members.sigmas / n;
+  anomaly.peak_change = std::max(anomaly.peak_change, members.peak_change);
+  anomaly.peak_sigmas = std::max(anomaly.peak_sigmas, members.peak_sigmas);
+  anomaly.voxels = std::max(anomaly.voxels, members.hot);
+  anomaly.last_seen = view.time;
+  ++anomaly.frames;
+  if ((view.viewpoint_W - track.last_viewpoint_W).norm() > kViewSpacing_m) {
+    ++anomaly.views;
+    track.last_viewpoint_W = view.viewpoint_W;
+  }
+  anomaly.confidence = confidence(anomaly);
+}
+
+void AnomalyDetector::settle(Track& track, Time now) const {
+  Anomaly& anomaly = track.anomaly;
+  const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
+  if (anomaly.state == AnomalyState::fresh) {
+    const bool stays = members.left <= config_.max_leaving * members.all;
+    if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
+    if (anomaly.views < config_.min_views && to_seconds(now - anomaly.first_seen) < config_.still_dwell_s) return;
+    anomaly.state = AnomalyState::confirmed;
+    anomaly.confirmed = now;
+    return;
+  }
+  // A few voxels may not have been seen since it cooled.
+  const int there = members.all - members.left;
+  const bool left = 2 * members.left > members.all;
+  anomaly.state = left || 5 * members.hot <= there ? AnomalyState::gone
+                  : 2 * members.hot < there        ? AnomalyState::cooling
+                                                   : AnomalyState::confirmed;
+}
+
+void AnomalyDetector::drop_vanished(Time now) {
+  std::erase_if(tracks_, [&](const auto& entry) {
+    const Anomaly& anomaly = entry.second.anomaly;
+    if (anomaly.state != AnomalyState::fresh) return false;
+    const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
+    if (members.hot > 0 && to_seconds(now - anomaly.last_seen) < config_.forget_fresh_s) return false;
+    for (auto& [key, watched] : watch_)
+      if (watched.owner == anomaly.id) watched.owner = 0;
+    return true;
+  });
+}
+
+}  // namespace pllit

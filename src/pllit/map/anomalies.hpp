@@ -1,0 +1,56 @@
+// From hot voxels to findings: clusters that last, and what becomes of them.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "pllit/map/watch.hpp"
+#include "pllit/state/anomaly.hpp"
+
+namespace pllit {
+
+struct AnomalyConfig {
+  WatchConfig watch;
+  int min_voxels = 4;    ///< smaller clusters are noise
+  double dwell_s = 0.5;  ///< how long its voxels must have been hot before the alarm is raised
+  int min_views = 2;     ///< viewpoints that it must have been hot from: what is seen past an unknown edge moves ...
+  double still_dwell_s = 3.0;  ///< ... or how long, for a rig that stands
+  double join_m = 0.1;         ///< hot voxels in neighbouring cells of this size are one anomaly
+  double max_leaving = 0.3;    ///< clusters of which a greater share has left their place are moving: people, vehicles
+  double registration_m = 0.02;  ///< how well images and surfaces lie on each other, one sigma
+  double forget_fresh_s = 10.0;  ///< what was never confirmed is dropped when not seen for so long
+};
+
+/// Follows what is hot from image to image. Anomalies keep their numbers; those that were never confirmed vanish again.
+class AnomalyDetector {
+ public:
+  explicit AnomalyDetector(const AnomalyConfig& config) : config_(config) {}
+
+  /// Takes in an image that the map has been given. Only images whose pose and calibration hold may come here.
+  void update(const WatchInput& input, const ThermalView& view);
+
+  /// In order of their numbers.
+  std::vector<Anomaly> anomalies() const;
+  const Watch& watch() const { return watch_; }
+
+ private:
+  /// Hot voxels that hang together, ascending.
+  using Cluster = std::vector<VoxelKey>;
+  struct Track {
+    Anomaly anomaly;
+    Vector3d last_viewpoint_W;
+  };
+
+  std::vector<Cluster> clusters(const ThermalMap& map) const;
+  Track& owner_of(const Cluster& cluster, const ThermalView& view);
+  void measure(Track& track, const ThermalView& view);
+  void settle(Track& track, Time now) const;
+  void drop_vanished(Time now);
+
+  AnomalyConfig config_;
+  Watch watch_;
+  std::map<std::uint32_t, Track> tracks_;
+  std::uint32_t next_id_ = 1;
+};
+
+}  // namespace pllit

@@ -1,0 +1,52 @@
+// What an image shows of surfaces whose points are known: which of them are really seen, and how bright they are.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <vector>
+
+#include "pllit/geometry/camera.hpp"
+#include "pllit/geometry/lie.hpp"
+
+namespace pllit {
+
+/// One point of a surface in one image.
+struct SurfaceObservation {
+  Vector3d p_W;                ///< m
+  Eigen::Vector2f pixel_px;    ///< where it was read, distorted
+  float intensity = 0.0F;      ///< calibrated, in the map's unit
+  float raw = 0.0F;            ///< as the camera gave it, of the nearest pixel
+  float cos_incidence = 1.0F;  ///< between ray and normal; 1 where the normal is not known
+  float range_m = 0.0F;        ///< from the camera
+  float footprint_m = 0.0F;    ///< side of a pixel on a surface that faces the camera
+};
+
+struct SamplingConfig {
+  double min_range_m = 0.3, max_range_m = 10.0;
+  double min_cos_incidence = 0.42;  ///< 65 degrees: beyond about 60 emissivity falls
+  int border_px = 8;                ///< of the image, left out
+  int cell_px = 4;                  ///< of the grid in which depths are compared
+  /// A point within so many pixels of a nearer surface is not used: rays that pass it by may hit the other one, for
+  /// calibration and clocks are imperfect.
+  int shadow_px = 8;
+  int edge_px = 3;             ///< nor is one within so many pixels of a farther one, where the image mixes the two
+  double depth_step_m = 0.08;  ///< what makes one surface nearer than another: this ...
+  double depth_step_share = 0.035;  ///< ... and this share of the range
+};
+
+/// Points with unit normals (zero where unknown), in W; equally many of both, or no normals at all.
+struct SurfacePoints {
+  std::vector<Vector3f> points_W, normals_W;
+};
+
+/// Images of one exposure, of the camera's size: calibrated CV_32FC1, raw CV_8UC1 or CV_16UC1.
+struct ImagePair {
+  cv::Mat calibrated, raw;
+};
+
+/// The points that the image shows: in range, inside the image, not hidden, away from depth edges, not at a grazing
+/// angle. In the order of `points`. Intensities are read bilinearly.
+std::vector<SurfaceObservation> sample_image(const SurfacePoints& points, const SE3& T_W_C, const Camera& camera,
+                                             const ImagePair& images, const SamplingConfig& config);
+
+}  // namespace pllit

@@ -1,0 +1,86 @@
+#include "pllit/map/thermal_voxel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pllit {
+namespace {
+
+constexpr float kViewSpacing_m = 0.25F;
+constexpr std::uint8_t kCalmImages = 3;
+
+/// Welford's recursion until learned, then exponential.
+void learn(ThermalVoxel& voxel, float intensity, float weight_share, const VoxelModelConfig& config) {
+  const float d = intensity - voxel.mean;
+  if (!voxel.learned(config)) {
+    ++voxel.images;
+    voxel.mean += d / static_cast<float>(voxel.images);
+    voxel.squares += d * (intensity - voxel.mean);
+    if (voxel.learned(config)) voxel.squares /= static_cast<float>(std::max(1u, voxel.images - 1));
+    return;
+  }
+  ++voxel.images;
+  const float weight =
+      weight_share * std::max(static_cast<float>(config.adaptation), 1.0F / static_cast<float>(voxel.images));
+  voxel.mean += weight * d;
+  voxel.squares = (1.0F - weight) * (voxel.squares + weight * d * d);
+}
+
+void remember_change(ThermalVoxel& voxel, float intensity, Time time) {
+  constexpr std::uint16_t kShort = 8;
+  if (voxel.changes == 0) voxel.change_since = time;
+  voxel.changes = static_cast<std::uint16_t>(std::min<int>(voxel.changes + 1, 60000));
+  voxel.changed_mean += (intensity - voxel.changed_mean) / static_cast<float>(std::min(voxel.changes, kShort));
+  voxel.calm = 0;
+}
+
+void remember_calm(ThermalVoxel& voxel) {
+  if (voxel.changes == 0) return;
+  if (++voxel.calm < kCalmImages) return;
+  voxel.changes = 0;
+  voxel.changed_mean = 0.0F;
+  voxel.calm = 0;
+  voxel.hot = false;
+}
+
+void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfig& config) {
+  const float d = sample.intensity - voxel.mean;
+  const float sigma = std::hypot(voxel.sigma(config), sample.sigma);
+  const float gate = static_cast<float>(config.gate_sigmas) * sigma;
+  const float limit = std::max(gate, static_cast<float>(config.min_change));
+  const bool changed = voxel.hot ? d > static_cast<float>(config.release_sigmas) * sigma : std::abs(d) > limit;
+  if (changed) {
+    remember_change(voxel, sample.intensity, sample.time);
+    if (voxel.changes >= config.hits && voxel.changed_mean - voxel.mean > limit) voxel.hot = true;
+    return;
+  }
+  remember_calm(voxel);
+  // Between the gate and the least change that counts it may be drift: followed, but slowly.
+  if (voxel.changes == 0) learn(voxel, sample.intensity, std::abs(d) > gate ? 0.25F : 1.0F, config);
+}
+
+}  // namespace
+
+float ThermalVoxel::sigma(const VoxelModelConfig& config) const {
+  const float variance = learned(config) ? squares : images > 1 ? squares / static_cast<float>(images - 1) : 0.0F;
+  return std::max(static_cast<float>(config.noise), std::sqrt(variance));
+}
+
+ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelModelConfig& config) {
+  if (voxel.points == 0.0F) voxel.first_seen = sample.time;
+  if (voxel.views == 0 || (sample.viewpoint_W - voxel.last_viewpoint_W).norm() > kViewSpacing_m) {
+    voxel.last_viewpoint_W = sample.viewpoint_W;
+    voxel.views = static_cast<std::uint16_t>(std::min<int>(voxel.views + 1, 60000));
+  }
+  voxel.last_seen = sample.time;
+  voxel.offset_sum_m += static_cast<float>(sample.points) * sample.offset_m;
+  voxel.points += static_cast<float>(sample.points);
+  voxel.raw = sample.raw;
+  if (voxel.learned(config))
+    judge(voxel, sample, config);
+  else
+    learn(voxel, sample.intensity, 1.0F, config);
+  return voxel;
+}
+
+}  // namespace pllit

@@ -1,0 +1,60 @@
+// The memory of one surface voxel: what intensity is normal there, and what has lately been seen instead.
+#pragma once
+
+#include <cstdint>
+
+#include "pllit/base/time.hpp"
+#include "pllit/geometry/lie.hpp"
+
+namespace pllit {
+
+struct VoxelModelConfig {
+  double noise = 6.0;           ///< least standard deviation: sensor, calibration, rounding; in the map's unit
+  int learned_after = 12;       ///< images before a voxel's normal intensity is known
+  double adaptation = 0.02;     ///< weight of each later image: the normal intensity fades in 50 images
+  double gate_sigmas = 3.0;     ///< beyond this an image does not count as normal
+  double min_change = 30.0;     ///< nor does it beyond this, and a smaller change is never hot; in the map's unit
+  double release_sigmas = 2.0;  ///< what is hot stays so until it is within this
+  int hits = 3;                 ///< images that must have shown a change
+};
+
+/// What one image showed of a voxel: the mean over its points there.
+struct VoxelSample {
+  Time time;
+  Vector3f viewpoint_W;
+  Vector3f offset_m;  ///< mean of the points from the voxel's centre
+  float intensity = 0.0F, raw = 0.0F;
+  float sigma = 0.0F;  ///< of the image's calibration, common to all voxels
+  int points = 1;
+};
+
+/// Normal intensity: mean and spread of the images so far, then exponential. An image that differs by more than the
+/// gate goes to a short-term model instead, so that what has become hot does not become normal.
+struct ThermalVoxel {
+  Time first_seen, last_seen;
+  Time change_since;  ///< of the short-term model; holds while changes > 0
+  Vector3f last_viewpoint_W = Vector3f::Zero();
+  Vector3f offset_sum_m = Vector3f::Zero();  ///< of the points from the voxel's centre
+  float points = 0.0F;
+  float mean = 0.0F, squares = 0.0F;  ///< squares: sum of squared deviations, or their weighted mean once learned
+  float changed_mean = 0.0F;          ///< short-term model
+  float raw = 0.0F;                   ///< of the last image, as the camera gave it, for human eyes
+  std::uint32_t images = 0;
+  std::uint16_t views = 0;    ///< viewpoints a quarter of a metre apart
+  std::uint16_t changes = 0;  ///< images in the short-term model
+  std::uint8_t calm = 0;      ///< normal images in a row since
+  bool hot = false;
+
+  bool learned(const VoxelModelConfig& config) const {
+    return images >= static_cast<std::uint32_t>(config.learned_after);
+  }
+  /// Standard deviation of what is normal, at least the configured noise.
+  float sigma(const VoxelModelConfig& config) const;
+  /// What is to be expected now: the short-term mean while something has changed, else the normal one.
+  float present() const { return changes > 0 ? changed_mean : mean; }
+};
+
+/// The voxel after one more image.
+ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelModelConfig& config);
+
+}  // namespace pllit

@@ -1,0 +1,56 @@
+// The voxels that are hotter than they should be: the first stages of detection, voxel by voxel.
+#pragma once
+
+#include <map>
+
+#include "pllit/map/sight_log.hpp"
+#include "pllit/map/thermal_map.hpp"
+
+namespace pllit {
+
+struct WatchConfig {
+  double forget_s = 5.0;         ///< voxels that belong to no anomaly are forgotten when not seen hot for so long
+  int surround_voxels = 8;       ///< how far around a new surface its surroundings are looked at
+  double evidence_lead_s = 0.5;  ///< sights so shortly before a surface was first seen do not speak of it
+};
+
+/// A voxel that is or was hot.
+struct WatchedVoxel {
+  bool new_surface = false;  ///< against its surroundings; else against its own past
+  bool joined = false;       ///< a surface of no known past next to a hot one, and as hot
+  bool hot = false;
+  bool vacated = false;     ///< seen through since: the surface has left
+  Time since{}, last{};     ///< first and last image of this heat
+  int hits = 0;             ///< images that showed it
+  int seen_through = 0;     ///< images in a row
+  float normal = 0.0F;      ///< what it should be
+  float sigma = 0.0F;       ///< standard deviation of that
+  float change = 0.0F;      ///< against it, the last one seen hot
+  float peak = 0.0F;        ///< the greatest
+  std::uint32_t owner = 0;  ///< anomaly that it belongs to; 0: none
+  Vector3d position_W = Vector3d::Zero();
+
+  double dwell_s() const { return to_seconds(last - since); }
+};
+
+/// What one image brought.
+struct WatchInput {
+  const ThermalMap& map;
+  std::span<const VoxelKey> seen;  ///< in this image
+  const Sight& sight;              ///< of the last scans
+  const SightLog& past;
+};
+
+/// All watched voxels, in a fixed order.
+using Watch = std::map<VoxelKey, WatchedVoxel>;
+
+/// The watch after one more image. A voxel is taken in
+/// - where its own past is known: when its change has lasted as the voxel's model demands, is hotter than what its
+///   neighbours' pasts explain (a seam that is seen a few pixels off), and
+/// - where it is a new surface: when it is hotter than its surroundings, which is what was to be seen through the place
+///   where it now is, and earlier sights did see through that; what they did not may have been hot for ever, unless it
+///   is part of a watched thing: next to it, and as hot.
+/// It cools when its model says so, and leaves when it is seen through.
+Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config);
+
+}  // namespace pllit

@@ -1,0 +1,47 @@
+// Keys of the thermographic stage.
+#include "pllit/slam/config_section.hpp"
+
+namespace pllit {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kUnits{"grey", "count", "kelvin"};
+constexpr std::array<std::string_view, 3> kShapes{"bias", "affine", "curve"};
+
+}  // namespace
+
+void list_anomalies(Section section, ThermographyConfig& config) {
+  section.choose(PLLIT_KEY(unit), kUnits,
+                 "What the images count: grey after gain control, raw counts, or counts of a radiometric camera.");
+  section.add(PLLIT_KEY(kelvin_per_count), "Of a radiometric camera.", "K", {1e-4, 10.0});
+  section.add(PLLIT_KEY(kelvin_at_zero), "Of a radiometric camera: temperature of count zero.", "K", {-1000.0, 1000.0});
+  section.add("max_range_m", config.sampling.max_range_m, "Surfaces farther from the camera are not watched.", "m",
+              {0.5, 100.0});
+  section.add("min_incidence_cos", config.sampling.min_cos_incidence,
+              "Surfaces seen at a more grazing angle, by its cosine, are not watched.", "", {0.0, 1.0});
+  section.add("voxel_m", config.map.voxel_m, "Voxel of the thermographic map.", "m", {0.01, 1.0});
+  section.add("memory_mb", config.map.memory_mb,
+              "Most memory it may take; beyond it what was not seen for longest goes.", "MB", {4.0, 1048576.0});
+  VoxelModelConfig& model = config.map.model;
+  section.add("noise", model.noise, "Least standard deviation of a voxel, in the unit of the images.", "", {1e-3, 1e4});
+  section.add("learned_after", model.learned_after, "Images before a voxel's normal intensity is known.", "",
+              {2.0, 1000.0});
+  section.add("gate_sigmas", model.gate_sigmas, "A greater change is not normal, in standard deviations.", "",
+              {1.0, 20.0});
+  section.add("min_change", model.min_change, "A smaller change is never hot, in the unit of the images.", "",
+              {1e-3, 1e4});
+  section.add("release_sigmas", model.release_sigmas, "What is hot stays so until it is within this.", "", {0.1, 20.0});
+  section.add("hits", model.hits, "Images that must have shown a change.", "", {1.0, 100.0});
+  section.choose("anchor", config.anchor.shape, kShapes,
+                 "How images are tied to the map: a shift, a line, or a curve (gain control by histograms).");
+  section.add("anchor_loss", config.anchor.loss,
+              "Surfaces whose intensity differs by more do not tie images to the map, in the unit of the images.", "",
+              {1e-3, 1e4});
+  section.add("min_voxels", config.anomalies.min_voxels, "Smaller clusters of hot voxels are noise.", "",
+              {1.0, 10000.0});
+  section.add("dwell_s", config.anomalies.dwell_s, "How long they must have been hot before the alarm.", "s",
+              {0.0, 60.0});
+  section.add(PLLIT_KEY(shutter_pause_s), "Images so soon after the shutter opened do not count.", "s", {0.0, 60.0});
+}
+
+}  // namespace pllit

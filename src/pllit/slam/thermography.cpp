@@ -1,0 +1,159 @@
+#include "pllit/slam/thermography.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <cstring>
+#include <opencv2/core.hpp>
+
+namespace pllit {
+namespace {
+
+/// An image through a function of its numbers, CV_32FC1.
+template <class Pixel, class Function>
+cv::Mat mapped(const cv::Mat& raw, const Function& function) {
+  double least = 0.0, most = 0.0;
+  cv::minMaxLoc(raw, &least, &most);
+  const auto first = static_cast<int>(least);
+  std::vector<float> table(static_cast<std::size_t>(static_cast<int>(most) - first + 1));
+  for (std::size_t i = 0; i < table.size(); ++i)
+    table[i] = static_cast<float>(function(least + static_cast<double>(i)));
+  cv::Mat result(raw.size(), CV_32FC1);
+  for (int row = 0; row < raw.rows; ++row) {
+    const Pixel* in = raw.ptr<Pixel>(row);
+    float* out = result.ptr<float>(row);
+    for (int column = 0; column < raw.cols; ++column) out[column] = table[static_cast<std::size_t>(in[column] - first)];
+  }
+  return result;
+}
+
+template <class Function>
+cv::Mat image_through(const cv::Mat& raw, const Function& function) {
+  return raw.depth() == CV_8U ? mapped<std::uint8_t>(raw, function) : mapped<std::uint16_t>(raw, function);
+}
+
+bool same_pixels(const cv::Mat& a, const cv::Mat& b) {
+  if (a.size() != b.size() || a.type() != b.type()) return false;
+  for (int row = 0; row < a.rows; ++row)
+    if (std::memcmp(a.ptr(row), b.ptr(row), static_cast<std::size_t>(a.cols) * a.elemSize()) != 0) return false;
+  return true;
+}
+
+}  // namespace
+
+std::optional<ThermographyInput> thermography_input(const FrameEstimate& frame, const Rig& rig,
+                                                    const PlaneMap& planes) {
+  if (!frame.image || !rig.camera) return std::nullopt;
+  const cv::Mat& counts = frame.image->counts;
+  if (counts.cols != rig.camera->width || counts.rows != rig.camera->height || counts.channels() != 1)
+    return std::nullopt;
+  const SE3 T_W_I = frame.posterior.mean.T_W_I();
+  ThermographyInput input{.time = frame.posterior.mean.time,
+                          .T_W_C = T_W_I * rig.T_I_C,
+                          .raw = counts,
+                          .greys = frame.greys,
+                          .planes = &planes,
+                          .trusted = frame.health.state == HealthState::good};
+  for (const Vector3f& p_I : frame.cloud.points_I)
+    input.points_W.push_back(T_W_I.act(p_I.cast<double>()).cast<float>());
+  return input;
+}
+
+Thermography::Thermography(const Camera& camera, const ThermographyConfig& config)
+    : camera_(camera),
+      config_(config),
+      map_(config.map),
+      sights_(config.sights),
+      detector_(config.anomalies),
+      surface_(config.surface) {}
+
+ThermographyFrame Thermography::process(const ThermographyInput& input) {
+  assert(input.raw.cols == camera_.width && input.raw.rows == camera_.height);
+  using Use = ThermographyFrame::Use;
+  ThermographyFrame frame;
+  if (input.trusted) remember_scan(input);
+  if (shutter_closed(input)) return {.use = Use::frozen};
+  if (!input.trusted) return {.use = Use::untrusted};
+
+  const auto unit = [&](double raw) {
+    if (config_.unit == IntensityUnit::kelvin) return config_.kelvin_at_zero + config_.kelvin_per_count * raw;
+    return config_.unit == IntensityUnit::grey ? input.greys(raw) : raw;
+  };
+  const SurfacePoints points = surface_.points(view_cone(input.T_W_C, camera_));
+  ThermalView view{.time = input.time, .viewpoint_W = input.T_W_C.translation()};
+  view.observations =
+      sample_image(points, input.T_W_C, camera_, {image_through(input.raw, unit), input.raw}, config_.sampling);
+  frame.observations = static_cast<int>(view.observations.size());
+  if (!tie_to_map(view.observations, frame)) return frame;
+
+  for (SurfaceObservation& observation : view.observations)
+    observation.intensity = static_cast<float>(
+        anchor_(static_cast<double>(observation.intensity), squared_radius(observation.pixel_px, camera_)));
+  const std::vector<VoxelKey> seen = map_.integrate(view);
+  if (frame.use == Use::mapped && !sight_.range_mm.empty()) {
+    detector_.update({.map = map_, .seen = seen, .sight = sight_, .past = sights_}, view);
+    sights_.add(sight_);
+  }
+  for (const Anomaly& anomaly : detector_.anomalies())
+    if (anomaly.confirmed == input.time) frame.confirmed.push_back(anomaly.id);
+  map_.trim();
+  return frame;
+}
+
+/// Video stands still while the shutter is closed, to the last pixel.
+bool Thermography::shutter_closed(const ThermographyInput& input) {
+  const bool frozen = same_pixels(input.raw, last_raw_);
+  input.raw.copyTo(last_raw_);
+  if (frozen) shutter_ = input.time;
+  return shutter_ && to_seconds(input.time - *shutter_) < config_.shutter_pause_s;
+}
+
+/// Surfaces stay in memory for a while, but not where the last scans see through them.
+void Thermography::remember_scan(const ThermographyInput& input) {
+  if (input.points_W.empty()) return;
+  const double reach_m = config_.sampling.max_range_m;
+  const auto normal_at = [&](const Vector3d& p_W) -> Vector3f {
+    if (!input.planes || (p_W - input.T_W_C.translation()).norm() > 1.5 * reach_m) return Vector3f::Zero();
+    const auto plane = input.planes->plane_at(p_W);
+    return plane ? Vector3f(plane->normal_W().cast<float>()) : Vector3f(Vector3f::Zero());
+  };
+  surface_.add(input.points_W, input.T_W_C.translation(), input.time, normal_at);
+  scans_.push_back(input.points_W);
+  while (static_cast<int>(scans_.size()) > config_.scans) scans_.pop_front();
+  std::vector<Vector3f> fresh_W;
+  for (const auto& scan_W : scans_) fresh_W.insert(fresh_W.end(), scan_W.begin(), scan_W.end());
+  sight_ = sight_of(input.time, input.T_W_C.translation(), fresh_W, config_.sights);
+  if (++scan_count_ % config_.scans != 0) return;
+  for (const Vector3d& p_W : surface_.carve(sight_, config_.sights)) map_.forget(p_W);
+}
+
+/// Finds the curve from this image's intensities to the map's; false where the image must not be used.
+bool Thermography::tie_to_map(const std::vector<SurfaceObservation>& observations, ThermographyFrame& frame) {
+  using Use = ThermographyFrame::Use;
+  const std::vector<AnchorPair> pairs = anchor_pairs(map_, observations, camera_);
+  frame.anchor = anchor_curve(pairs, anchor_, config_.anchor);
+  if (frame.anchor.holds) {
+    anchor_ = frame.anchor.curve;
+    return true;
+  }
+  // Too few known surfaces: the last curve is the best guess, and at the start any curve will do.
+  frame.use = frame.anchor.pairs < config_.anchor.min_pairs ? Use::learned : Use::contradicts;
+  return frame.use == Use::learned;
+}
+
+PointTable Thermography::anomaly_points() const {
+  PointTable table{.points = {}, .fields = {{"id", {}}, {"change", {}}, {"change_sigmas", {}}}};
+  std::vector<std::uint32_t> alarms;
+  for (const Anomaly& anomaly : detector_.anomalies())
+    if (anomaly.confirmed) alarms.push_back(anomaly.id);
+  for (const auto& [key, watched] : detector_.watch()) {
+    if (!std::ranges::binary_search(alarms, watched.owner)) continue;
+    table.points.push_back(watched.position_W.cast<float>());
+    table.fields[0].values.push_back(static_cast<float>(watched.owner));
+    table.fields[1].values.push_back(watched.peak);
+    table.fields[2].values.push_back(watched.peak / watched.sigma);
+  }
+  return table;
+}
+
+}  // namespace pllit

@@ -1,0 +1,78 @@
+// The thermographic stage: after an image's pose is known, its intensities go into the map, and what is abnormally hot
+// is told.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "pllit/slam/odometry.hpp"
+#include "pllit/slam/thermography_config.hpp"
+
+namespace pllit {
+
+/// One image with what belongs to it.
+struct ThermographyInput {
+  Time time;
+  SE3 T_W_C = SE3::Identity();       ///< at that time
+  cv::Mat raw{};                     ///< CV_8UC1 or CV_16UC1, of the camera's size
+  GreyCurve greys{};                 ///< of the photometric stage; the identity without one
+  std::vector<Vector3f> points_W{};  ///< the scan that ends with it, or empty
+  const PlaneMap* planes = nullptr;  ///< for the surfaces' normals; none: not known
+  bool trusted = true;               ///< localisation is good
+};
+
+/// The input that a frame of the odometry gives; nothing where its image cannot be used: of another size than the rig's
+/// camera, or in colour.
+std::optional<ThermographyInput> thermography_input(const FrameEstimate& frame, const Rig& rig, const PlaneMap& planes);
+
+/// What an image came to.
+struct ThermographyFrame {
+  enum class Use {
+    mapped,      ///< learned from and searched
+    learned,     ///< learned from, but not tied to the map, so not searched
+    untrusted,   ///< not used: localisation was degraded
+    frozen,      ///< not used: the shutter was closed, or has just opened
+    contradicts  ///< not used: its greys do not fit to the map's by any curve
+  };
+  Use use = Use::mapped;
+  AnchorFit anchor{};
+  int observations = 0;
+  std::vector<std::uint32_t> confirmed{};  ///< anomalies that this image confirmed
+};
+
+class Thermography {
+ public:
+  Thermography(const Camera& camera, const ThermographyConfig& config);
+
+  /// Takes the next image; times ascend.
+  ThermographyFrame process(const ThermographyInput& input);
+
+  const ThermalMap& map() const { return map_; }
+  std::vector<Anomaly> anomalies() const { return detector_.anomalies(); }
+  /// The hot points of all anomalies that are or were alarms, with fields `id`, `change` and `change_sigmas`: what the
+  /// paper marks red.
+  PointTable anomaly_points() const;
+  std::size_t watched() const { return detector_.watch().size(); }
+  const ThermographyConfig& config() const { return config_; }
+
+ private:
+  bool shutter_closed(const ThermographyInput& input);
+  void remember_scan(const ThermographyInput& input);
+  bool tie_to_map(const std::vector<SurfaceObservation>& observations, ThermographyFrame& frame);
+
+  Camera camera_;
+  ThermographyConfig config_;
+  ThermalMap map_;
+  SightLog sights_;
+  AnomalyDetector detector_;
+  AnchorCurve anchor_;
+  RecentSurface surface_;
+  std::deque<std::vector<Vector3f>> scans_;
+  Sight sight_;  ///< of these
+  int scan_count_ = 0;
+  cv::Mat last_raw_;
+  std::optional<Time> shutter_;  ///< last image that was frozen
+};
+
+}  // namespace pllit

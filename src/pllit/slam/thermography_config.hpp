@@ -1,0 +1,24 @@
+// What a user may set of the thermographic stage.
+#pragma once
+
+#include "pllit/map/anchor.hpp"
+#include "pllit/map/anomalies.hpp"
+#include "pllit/map/recent_surface.hpp"
+
+namespace pllit {
+
+struct ThermographyConfig {
+  /// What the camera's numbers are, and with it what may be claimed. Greys and counts tell of changes only.
+  IntensityUnit unit = IntensityUnit::grey;
+  double kelvin_per_count = 0.01, kelvin_at_zero = 0.0;  ///< of radiometric images
+  SamplingConfig sampling;
+  ThermalMapConfig map;
+  AnchorConfig anchor;
+  SightConfig sights;
+  AnomalyConfig anomalies;
+  RecentSurfaceConfig surface;
+  int scans = 3;                 ///< so many scans together tell what is no longer there
+  double shutter_pause_s = 0.5;  ///< images this soon after the shutter opened do not count
+};
+
+}  // namespace pllit

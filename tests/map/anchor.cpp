@@ -1,0 +1,99 @@
+#include "pllit/map/anchor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/random_states.hpp"
+
+namespace pllit {
+namespace {
+
+using test::Random;
+
+/// What a gain control may do: increasing, bent.
+double bent(double normal) { return 20.0 + 210.0 * std::pow(std::clamp(normal / 255.0, 0.0, 1.5), 0.6); }
+
+/// Pairs of a scene whose normal greys lie between 40 and 180; a share of it has become hot.
+std::vector<AnchorPair> scene(Random& random, int count, double hot_share, double (*gain_control)(double)) {
+  std::vector<AnchorPair> pairs;
+  for (int i = 0; i < count; ++i) {
+    const double normal = random.uniform(40.0, 180.0);
+    const double now = i < hot_share * count ? normal + 90.0 : normal;
+    pairs.push_back({.now = static_cast<float>(gain_control(now) + random.normal(1.5)),
+                     .normal = static_cast<float>(normal + random.normal(1.5))});
+  }
+  return pairs;
+}
+
+TEST(AnchorCurve, UndoesAnAffineGainControl) {
+  Random random(1);
+  const auto gain_control = [](double normal) { return 0.6 * normal + 35.0; };
+  const AnchorFit fit =
+      anchor_curve(scene(random, 2000, 0.0, gain_control), {}, {.shape = AnchorConfig::Shape::affine});
+  ASSERT_TRUE(fit.holds);
+  for (const double normal : {50.0, 100.0, 170.0}) EXPECT_NEAR(fit.curve(gain_control(normal)), normal, 1.0);
+}
+
+TEST(AnchorCurve, UndoesABentOne) {
+  Random random(2);
+  const AnchorFit fit = anchor_curve(scene(random, 3000, 0.0, bent), {}, {});
+  ASSERT_TRUE(fit.holds);
+  for (const double normal : {50.0, 80.0, 110.0, 140.0, 170.0}) EXPECT_NEAR(fit.curve(bent(normal)), normal, 2.0);
+  EXPECT_LT(fit.rms, 4.0);
+}
+
+TEST(AnchorCurve, IsNotDraggedByAThirdOfTheImageThatHasBecomeHot) {
+  Random random(3);
+  for (const auto gain_control : {+[](double normal) { return 0.7 * normal + 10.0; }, +bent}) {
+    const AnchorFit fit = anchor_curve(scene(random, 3000, 0.33, gain_control), {}, {});
+    ASSERT_TRUE(fit.holds);
+    for (const double normal : {60.0, 110.0, 160.0}) EXPECT_NEAR(fit.curve(gain_control(normal)), normal, 4.0);
+    // Hot things stay hot, even brighter than anything that did not change.
+    EXPECT_GT(fit.curve(gain_control(270.0)), 180.0);
+  }
+}
+
+TEST(AnchorCurve, Increases) {
+  Random random(4);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<AnchorPair> pairs = scene(random, 400, 0.3, bent);
+    const AnchorFit fit = anchor_curve(pairs, {}, {});
+    double last = fit.curve(-10.0);
+    for (double now = -9.0; now < 300.0; now += 1.0) {
+      EXPECT_GT(fit.curve(now), last);
+      last = fit.curve(now);
+    }
+  }
+}
+
+TEST(AnchorCurve, OfARadiometricCameraOnlyShifts) {
+  Random random(5);
+  std::vector<AnchorPair> pairs;
+  for (int i = 0; i < 500; ++i) {
+    const double K = random.uniform(290.0, 300.0);
+    pairs.push_back({.now = static_cast<float>(K + 0.4 + random.normal(0.1)), .normal = static_cast<float>(K)});
+  }
+  const AnchorFit fit = anchor_curve(pairs, {}, {.shape = AnchorConfig::Shape::bias, .loss = 1.0});
+  ASSERT_TRUE(fit.holds);
+  EXPECT_EQ(fit.curve.gain, 1.0);
+  EXPECT_NEAR(fit.curve.bias, -0.4, 0.02);
+}
+
+TEST(AnchorCurve, StaysAsItWasWhereThePairsAreFewOrFitNoCurve) {
+  Random random(6);
+  const AnchorCurve before{.gain = 1.2, .bias = -3.0, .knots = {}, .offsets = {}};
+  EXPECT_FALSE(anchor_curve(scene(random, 100, 0.0, bent), before, {}).holds);
+  std::vector<AnchorPair> noise;
+  for (int i = 0; i < 2000; ++i)
+    noise.push_back({.now = static_cast<float>(random.uniform(0.0, 255.0)),
+                     .normal = static_cast<float>(random.uniform(0.0, 255.0))});
+  const AnchorFit fit = anchor_curve(noise, before, {});
+  EXPECT_FALSE(fit.holds);
+  EXPECT_EQ(fit.curve.gain, before.gain);
+  EXPECT_EQ(fit.curve.bias, before.bias);
+}
+
+}  // namespace
+}  // namespace pllit

@@ -1,0 +1,152 @@
+#include "pllit/map/image_sampling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "support/random_states.hpp"
+
+namespace pllit {
+namespace {
+
+using test::Random;
+
+Camera camera() {
+  return {.width = 320,
+          .height = 256,
+          .fx = 300.0,
+          .fy = 305.0,
+          .cx = 158.0,
+          .cy = 130.0,
+          .k = {-0.28, 0.09, 0.0004, -0.0003, 0.0}};
+}
+
+/// Intensity that tells where it was read; linear, so that bilinear reading is exact.
+double pattern(double x, double y) { return 3.0 * x - 2.0 * y + 7.0; }
+
+ImagePair pattern_images() {
+  ImagePair images{cv::Mat(camera().height, camera().width, CV_32FC1),
+                   cv::Mat(camera().height, camera().width, CV_8UC1)};
+  for (int row = 0; row < camera().height; ++row)
+    for (int column = 0; column < camera().width; ++column) {
+      images.calibrated.at<float>(row, column) = static_cast<float>(pattern(column, row));
+      images.raw.at<std::uint8_t>(row, column) = static_cast<std::uint8_t>((column + 3 * row) % 256);
+    }
+  return images;
+}
+
+/// Points of a wall 5 m ahead and of panels before it, a little rough.
+SurfacePoints clutter(Random& random, int count) {
+  SurfacePoints points;
+  for (int i = 0; i < count; ++i) {
+    const double depth = i % 3 == 0 ? 5.0 : i % 3 == 1 ? 2.0 + 0.5 * std::floor(random.uniform(0.0, 4.0)) : 0.5;
+    points.points_W.emplace_back(static_cast<float>(random.uniform(-3.0, 3.0)),
+                                 static_cast<float>(random.uniform(-3.0, 3.0)),
+                                 static_cast<float>(depth + random.normal(0.01)));
+  }
+  return points;
+}
+
+/// The obvious twin: every point against every other.
+std::vector<std::size_t> naive(const SurfacePoints& points, const SE3& T_W_C, const SamplingConfig& config) {
+  struct Seen {
+    std::size_t index;
+    int column, row;
+    float range_m;
+    bool in_sight = true;
+  };
+  std::vector<Seen> seen;
+  for (std::size_t i = 0; i < points.points_W.size(); ++i) {
+    const Vector3d p_C = T_W_C.inverse().act(points.points_W[i].cast<double>());
+    const auto pixel = camera().project(p_C);
+    if (p_C.z() < 0.1 * p_C.norm() || p_C.norm() < config.min_range_m || p_C.norm() > config.max_range_m || !pixel)
+      continue;
+    const double b = config.border_px;
+    if (pixel->x() < b || pixel->y() < b || pixel->x() > camera().width - 1 - b || pixel->y() > camera().height - 1 - b)
+      continue;
+    seen.push_back({i, static_cast<int>(pixel->x() + 0.5) / config.cell_px,
+                    static_cast<int>(pixel->y() + 0.5) / config.cell_px, static_cast<float>(p_C.norm())});
+  }
+  const auto step = [&](float r) {
+    return static_cast<float>(config.depth_step_m + config.depth_step_share * double(r));
+  };
+  const auto near = [&](const Seen& a, const Seen& b, int px) {
+    const int reach = (px + config.cell_px - 1) / config.cell_px;
+    return std::abs(a.column - b.column) <= reach && std::abs(a.row - b.row) <= reach;
+  };
+  for (Seen& a : seen)
+    for (const Seen& b : seen)
+      if (near(a, b, 0) && b.range_m < a.range_m - step(a.range_m)) a.in_sight = false;
+  std::vector<std::size_t> kept;
+  for (const Seen& a : seen) {
+    bool clear = true;
+    for (const Seen& b : seen) {
+      if (near(a, b, config.shadow_px) && b.range_m < a.range_m - step(a.range_m)) clear = false;
+      if (b.in_sight && near(a, b, config.edge_px) && b.range_m > a.range_m + step(a.range_m)) clear = false;
+    }
+    if (clear) kept.push_back(a.index);
+  }
+  return kept;
+}
+
+TEST(SampleImage, KeepsWhatComparingEveryPointWithEveryOtherKeeps) {
+  Random random(1);
+  for (int round = 0; round < 20; ++round) {
+    const SE3 T_W_C(Vector3d(random.vector(0.3)), exp_so3(random.vector(0.15)));
+    const SurfacePoints points = clutter(random, 1500);
+    const SamplingConfig config{.shadow_px = 4 * (round % 4), .edge_px = 4 * (round % 3)};
+    const auto observations = sample_image(points, T_W_C, camera(), pattern_images(), config);
+    const auto expected = naive(points, T_W_C, config);
+    ASSERT_EQ(observations.size(), expected.size());
+    EXPECT_GT(observations.size(), 20u);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_EQ(observations[i].p_W.cast<float>(), points.points_W[expected[i]]);
+  }
+}
+
+TEST(SampleImage, ReadsThePixelThatTheLensShowsThePointIn) {
+  Random random(2);
+  SurfacePoints wall;
+  for (int i = 0; i < 400; ++i)
+    wall.points_W.emplace_back(static_cast<float>(random.uniform(-2.0, 2.0)),
+                               static_cast<float>(random.uniform(-1.6, 1.6)), 4.0F);
+  const SE3 T_W_C(Vector3d(0.1, -0.05, 0.0), exp_so3({0.02, -0.03, 0.3}));
+  const auto observations = sample_image(wall, T_W_C, camera(), pattern_images(), {});
+  ASSERT_GT(observations.size(), 300u);
+  for (const SurfaceObservation& o : observations) {
+    const Eigen::Vector2d pixel = *camera().project(T_W_C.inverse().act(o.p_W));
+    EXPECT_NEAR(static_cast<double>(o.intensity), pattern(pixel.x(), pixel.y()), 1e-3);
+    const int column = static_cast<int>(pixel.x() + 0.5), row = static_cast<int>(pixel.y() + 0.5);
+    EXPECT_EQ(static_cast<int>(o.raw), (column + 3 * row) % 256);
+    EXPECT_NEAR(static_cast<double>(o.range_m), (o.p_W - T_W_C.translation()).norm(), 1e-5);
+    EXPECT_NEAR(static_cast<double>(o.footprint_m), static_cast<double>(o.range_m) / 302.5, 1e-6);
+  }
+}
+
+TEST(SampleImage, LeavesOutWhatIsSeenAtAGrazingAngleOrTooFar) {
+  SurfacePoints points;
+  const auto add = [&](const Vector3f& p, const Vector3f& n) {
+    points.points_W.push_back(p);
+    points.normals_W.push_back(n.normalized());
+  };
+  add({0.0F, 0.0F, 3.0F}, {0.0F, 0.0F, -1.0F});
+  add({0.5F, 0.0F, 3.0F}, {1.0F, 0.0F, -0.2F});  // grazing
+  add({-0.5F, 0.0F, 3.0F}, Vector3f::Zero());
+  add({0.0F, 0.5F, 11.0F}, {0.0F, 0.0F, -1.0F});  // beyond the gate
+  points.normals_W[2].setZero();
+  const auto observations = sample_image(points, SE3::Identity(), camera(), pattern_images(), {});
+  ASSERT_EQ(observations.size(), 2u);
+  EXPECT_NEAR(static_cast<double>(observations[0].cos_incidence), 1.0, 1e-6);
+  EXPECT_EQ(observations[1].cos_incidence, 1.0F);
+}
+
+TEST(SampleImage, ReadsSixteenBits) {
+  ImagePair images = pattern_images();
+  images.raw = cv::Mat(camera().height, camera().width, CV_16UC1, cv::Scalar(54321));
+  const SurfacePoints points{.points_W = {{0.0F, 0.0F, 3.0F}}, .normals_W = {}};
+  EXPECT_EQ(sample_image(points, SE3::Identity(), camera(), images, {}).at(0).raw, 54321.0F);
+}
+
+}  // namespace
+}  // namespace pllit

@@ -1,0 +1,133 @@
+#include "pllit/map/thermal_voxel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "support/random_states.hpp"
+
+namespace pllit {
+namespace {
+
+using test::Random;
+
+/// A voxel that is shown images, ten a second.
+struct Shown {
+  VoxelModelConfig config{.noise = 4.0, .min_change = 20.0};
+  ThermalVoxel voxel{};
+  Time time{};
+
+  void operator()(double intensity) {
+    time += std::chrono::milliseconds(100);
+    voxel = seen(voxel,
+                 {.time = time,
+                  .viewpoint_W = Vector3f(static_cast<float>(0.1 * to_seconds(time)), 0.0F, 0.0F),
+                  .offset_m = Vector3f::Zero(),
+                  .intensity = static_cast<float>(intensity)},
+                 config);
+  }
+  void noisy(Random& random, double mean, double sigma, int images) {
+    for (int i = 0; i < images; ++i) (*this)(mean + random.normal(sigma));
+  }
+};
+
+TEST(ThermalVoxel, LearnsMeanAndSpreadAsOneWouldFromAllImagesAtOnce) {
+  Random random(1);
+  Shown shown{.config = {.noise = 0.01}, .voxel = {}};
+  std::vector<double> values;
+  for (int i = 0; i < shown.config.learned_after; ++i) values.push_back(100.0 + random.normal(5.0));
+  double mean = 0.0, squares = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  for (const double value : values) shown(value);
+  EXPECT_TRUE(shown.voxel.learned(shown.config));
+  EXPECT_NEAR(static_cast<double>(shown.voxel.mean), mean, 1e-3);
+  EXPECT_NEAR(static_cast<double>(shown.voxel.sigma(shown.config)),
+              std::sqrt(squares / static_cast<double>(values.size() - 1)), 1e-3);
+}
+
+TEST(ThermalVoxel, FollowsWhatDriftsSlowly) {
+  Shown shown;
+  for (int i = 0; i < 1500; ++i) shown(100.0 + 0.04 * i);
+  EXPECT_FALSE(shown.voxel.hot);
+  EXPECT_NEAR(static_cast<double>(shown.voxel.mean), 160.0, 3.0);
+}
+
+TEST(ThermalVoxel, DoesNotTakeHeatForNormalHoweverLongItLasts) {
+  Random random(2);
+  Shown shown;
+  shown.noisy(random, 100.0, 3.0, 50);
+  const float normal = shown.voxel.mean;
+  shown.noisy(random, 150.0, 3.0, 5000);
+  EXPECT_TRUE(shown.voxel.hot);
+  EXPECT_EQ(shown.voxel.mean, normal);
+  EXPECT_NEAR(static_cast<double>(shown.voxel.changed_mean), 150.0, 4.0);
+}
+
+TEST(ThermalVoxel, CallsHotOnlyWhatSeveralImagesShow) {
+  Shown shown;
+  for (int i = 0; i < 40; ++i) shown(100.0);
+  for (int i = 0; i < 2; ++i) shown(160.0);
+  EXPECT_FALSE(shown.voxel.hot);
+  shown(160.0);
+  EXPECT_TRUE(shown.voxel.hot);
+}
+
+TEST(ThermalVoxel, NeverCallsColdHot) {
+  Shown shown;
+  for (int i = 0; i < 40; ++i) shown(100.0);
+  for (int i = 0; i < 40; ++i) shown(30.0);
+  EXPECT_FALSE(shown.voxel.hot);
+  EXPECT_GT(shown.voxel.changes, 0);
+}
+
+TEST(ThermalVoxel, StaysHotUntilItIsWithinTheLowerLimit) {
+  Shown shown;
+  for (int i = 0; i < 40; ++i) shown(100.0);
+  for (int i = 0; i < 5; ++i) shown(130.0);
+  ASSERT_TRUE(shown.voxel.hot);
+  for (int i = 0; i < 20; ++i) shown(110.0);  // 2.5 sigma: would not raise it, does not end it
+  EXPECT_TRUE(shown.voxel.hot);
+  for (int i = 0; i < 2; ++i) shown(104.0);
+  EXPECT_TRUE(shown.voxel.hot);
+  shown(104.0);
+  EXPECT_FALSE(shown.voxel.hot);
+  EXPECT_EQ(shown.voxel.changes, 0);
+}
+
+TEST(ThermalVoxel, KeepsFalseAlarmsToWhatTheArithmeticOfThreeSigmaSays) {
+  // One-sided 3 sigma is 1.35e-3 an image; three images in a row by chance would be 2.5e-9 were they independent of
+  // what was learned. A least change of five sigma leaves nothing at all.
+  constexpr int kVoxels = 2000, kImages = 300;
+  Random random(3);
+  int beyond = 0, hot_at_3 = 0, hot_at_5 = 0;
+  for (int i = 0; i < kVoxels; ++i) {
+    Shown loose{.config = {.noise = 4.0, .learned_after = 60, .min_change = 12.0}, .voxel = {}};
+    Shown strict;
+    for (int image = 0; image < kImages; ++image) {
+      const double value = 100.0 + random.normal(4.0);
+      const bool learned = loose.voxel.learned(loose.config);
+      const std::uint16_t before = loose.voxel.changes;
+      loose(value);
+      strict(value);
+      beyond += learned && loose.voxel.changes > before ? 1 : 0;
+      hot_at_3 += loose.voxel.hot ? 1 : 0;
+      hot_at_5 += strict.voxel.hot ? 1 : 0;
+    }
+  }
+  const double share = beyond / static_cast<double>(kVoxels * (kImages - 60));
+  EXPECT_LT(share, 2.0 * 2.7e-3);  // both signs
+  EXPECT_GT(share, 0.1 * 2.7e-3);  // the gate is there
+  EXPECT_LT(hot_at_3, kVoxels * kImages / 100000);
+  EXPECT_EQ(hot_at_5, 0);
+}
+
+TEST(ThermalVoxel, CountsViewpointsAQuarterOfAMetreApart) {
+  Shown shown;
+  for (int i = 0; i < 100; ++i) shown(100.0);  // a walk of 1 m
+  EXPECT_EQ(shown.voxel.views, 4);
+}
+
+}  // namespace
+}  // namespace pllit
