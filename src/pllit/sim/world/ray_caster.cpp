@@ -73,12 +73,11 @@ RTCRay embree_ray(const Vector3d& origin, const Vector3d& direction, float near_
           .flags = 0};
 }
 
-/// Packets of eight run 1.3 to 1.7 times as fast as single rays where they point in similar directions (AVX2, 200 000
-/// triangles).
-constexpr std::size_t kPacket = 8;
+/// Rays that Embree is given together; where its instructions are narrower it splits them.
+constexpr std::size_t kPacket = 16;
 
-RTCRayHit8 packet_of(std::span<const Ray> rays, const Vector3d& centre_W, float reach_m) {
-  RTCRayHit8 packet{};
+RTCRayHit16 packet_of(std::span<const Ray> rays, const Vector3d& centre_W, float reach_m) {
+  RTCRayHit16 packet{};
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const RTCRay ray = embree_ray(rays[i].origin_W - centre_W, rays[i].direction_W, 0.0F, reach_m);
     packet.ray.org_x[i] = ray.org_x;
@@ -227,11 +226,11 @@ void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
   arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const auto some = rays.subspan(first, std::min(kPacket, rays.size() - first));
-    RTCRayHit8 answers = packet_of(some, scene_->centre_W, static_cast<float>(scene_->reach_m));
-    alignas(32) std::array<int, kPacket> valid{};
+    RTCRayHit16 answers = packet_of(some, scene_->centre_W, static_cast<float>(scene_->reach_m));
+    alignas(64) std::array<int, kPacket> valid{};
     std::fill_n(valid.begin(), some.size(), -1);
-    rtcIntersect8(valid.data(), scene_->top.get(), &answers, &arguments);
-    const RTCHit8& hit = answers.hit;
+    rtcIntersect16(valid.data(), scene_->top.get(), &answers, &arguments);
+    const RTCHit16& hit = answers.hit;
     for (std::size_t i = 0; i < some.size(); ++i)
       hits[first + i] = hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
                             ? Hit{}
@@ -256,11 +255,11 @@ void RayCaster::blocked(std::span<const Ray> rays, double length_m, std::span<st
   arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const auto some = rays.subspan(first, std::min(kPacket, rays.size() - first));
-    RTCRay8 packet = packet_of(some, scene_->centre_W, static_cast<float>(length_m)).ray;
+    RTCRay16 packet = packet_of(some, scene_->centre_W, static_cast<float>(length_m)).ray;
     std::ranges::fill(packet.tnear, kBlockedMargin_m);
-    alignas(32) std::array<int, kPacket> valid{};
+    alignas(64) std::array<int, kPacket> valid{};
     std::fill_n(valid.begin(), some.size(), -1);
-    rtcOccluded8(valid.data(), scene_->top.get(), &packet, &arguments);
+    rtcOccluded16(valid.data(), scene_->top.get(), &packet, &arguments);
     for (std::size_t i = 0; i < some.size(); ++i) blocked[first + i] = packet.tfar[i] < 0.0F;
   }
 }

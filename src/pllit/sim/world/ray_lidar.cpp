@@ -11,8 +11,8 @@
 namespace pllit {
 namespace {
 
-/// For how long actors stand still.
-constexpr Duration kStep = std::chrono::milliseconds(5);
+/// For how long actors stand still, and how much is cast at once where none moves.
+constexpr Duration kStep = std::chrono::milliseconds(5), kLongStep = std::chrono::milliseconds(25);
 /// Shots that one thread casts together.
 constexpr std::size_t kChunk = 32;
 /// How far a neighbour may lie off a surface and still be taken for a part of it.
@@ -86,7 +86,8 @@ class Scanner {
     LidarScan result;
     result.start = start_;
     const BeamPattern& pattern = lidar_.pattern;
-    const std::int64_t last = first_shot_of(pattern, index_ + 1), stride = kStep / pattern.shot_period;
+    const std::int64_t last = first_shot_of(pattern, index_ + 1),
+                       stride = (anything_moves() ? kStep : kLongStep) / pattern.shot_period;
     for (std::int64_t first = first_shot_of(pattern, index_); first < last; first += stride)
       add_step(first, static_cast<std::size_t>(std::min(stride, last - first)), arena, result);
     return result;
@@ -99,6 +100,10 @@ class Scanner {
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::ranges::sort(order, {}, [&](std::size_t i) { return pattern.lasers[i].angle_rad; });
     return order;
+  }
+
+  bool anything_moves() const {
+    return std::ranges::any_of(run_.place.actors(), [](const Actor& actor) { return actor.path.size() > 1; });
   }
 
   void add_step(std::int64_t first, std::size_t shots, Arena& arena, LidarScan& result) {
