@@ -152,6 +152,7 @@ std::vector<Key> world_keys() {
                              {"both", C::Images::both}}),
       choice_key<bool>("scans", For::worlds, &C::scans, {{"1", true}, {"0", false}}),
       choice_key<bool>("light", For::worlds, &C::day, {{"day", true}, {"night", false}}),
+      choice_key<bool>("bare", For::worlds, &C::bare, {{"0", false}, {"1", true}}),
       count_key("people", &C::people, 30),
       count_key("cars", &C::cars, 30),
       choice_key<C::Finding>("finding", For::worlds, &C::finding,
@@ -230,6 +231,7 @@ std::optional<std::string> contradiction(const SimConfig& config) {
     return std::format("finding= needs a room or a plant; a {} has no table, cabinet or pipe", name_of(config.scene));
   if (config.finding != SimConfig::Finding::none && config.duration_s && config.finding_at_s >= *config.duration_s)
     return std::format("finding_at={} lies beyond duration={}", config.finding_at_s, *config.duration_s);
+  if (config.bare && config.scene != SceneKind::corridor) return "bare= needs a corridor";
   if (config.cars > 0 && config.scene != SceneKind::street) return "cars= needs a street";
   if (config.motion.empty() && config.way != SimConfig::Way::as_recorded) return "way= needs motion=FILE";
   if (config.motion.empty() && config.speedup != 1.0) return "speedup= needs motion=FILE";

@@ -67,12 +67,13 @@ struct SimConfig {
   std::string motion;          ///< TUM file of the IMU's poses; else a motion is made that suits the scene
   double speedup = 1.0;
   Way way = Way::as_recorded;
-  std::optional<double> length_m;  ///< drives are continued or cut to it, corridors are as long
+  std::optional<double> length_m;  ///< drives are continued or cut to it, corridors (also beside stairs) are as long
   std::string imu;                 ///< model; else the rig's own
   double image_rate_hz = 10.0;
   Images images = Images::agc;
   bool scans = true;  ///< the LiDAR is on
   bool day = true;
+  bool bare = false;  ///< of a corridor: flush doors, and nothing else that a LiDAR could see along it
   int people = 0, cars = 0;
   Finding finding = Finding::none;
   Arrival arrival = Arrival::drawn;

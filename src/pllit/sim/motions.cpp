@@ -33,7 +33,7 @@ Motion upright_motion(const SimConfig& config) {
     case SceneKind::corridor:
       return corridor_walk({.seed = config.seed, .length_m = config.length_m.value_or(100.0)});
     case SceneKind::stairs:
-      return stair_climb({.seed = config.seed});
+      return stair_climb({.seed = config.seed, .stairs = {.level_m = config.length_m.value_or(0.0)}});
     default:
       return inspection_walk({.seed = config.seed});
   }

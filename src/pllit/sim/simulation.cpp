@@ -106,6 +106,7 @@ PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motio
   place.height_m = rig.height_m;
   place.clearance_m = rig.on_car ? 2.5 : 0.6;
   place.light = config.day ? Light::day : Light::night;
+  place.bare = config.bare;
   place.people = config.people;
   place.cars = config.cars;
   if (config.finding != SimConfig::Finding::none) {

@@ -116,10 +116,9 @@ TEST(Findings, AreElsewhereWithAnotherSeed) {
         0.3);
 }
 
-TEST(Corridor, ShowsNothingThatFacesAlongItAroundItsMiddle) {
-  const PlaceConfig config{.kind = PlaceKind::corridor, .seed = 3, .path_W = line_path(60.0)};
+/// Share of the surface within 30 m of the middle that faces along the corridor.
+double share_facing_along(const PlaceConfig& config) {
   const auto place = made(config);
-  ASSERT_NE(place, nullptr);
   const Vector3d middle = 0.5 * (config.path_W.front() + config.path_W.back()), axis(0.8, 0.6, 0.0);
   double along = 0.0, area = 0.0;
   for (const std::uint32_t i : place->tiles_near(middle, 30.0)) {
@@ -133,7 +132,51 @@ TEST(Corridor, ShowsNothingThatFacesAlongItAroundItsMiddle) {
     }
   }
   EXPECT_GT(area, 200.0);
-  EXPECT_LT(along / area, 1e-3);
+  return along / area;
+}
+
+TEST(Corridor, BareShowsNothingThatFacesAlongItAroundItsMiddle) {
+  EXPECT_LT(share_facing_along({.kind = PlaceKind::corridor, .seed = 3, .path_W = line_path(60.0), .bare = true}),
+            1e-3);
+}
+
+TEST(Corridor, ShowsLittleThatFacesAlongIt) {
+  for (const std::uint64_t seed : {3, 4, 5}) {
+    const double share = share_facing_along({.kind = PlaceKind::corridor, .seed = seed, .path_W = line_path(60.0)});
+    EXPECT_GT(share, 0.002);
+    EXPECT_LT(share, 0.05);
+  }
+}
+
+/// Along x for 30 m, up two flights with a half turn between, and back for 30 m.
+std::vector<Vector3d> corridor_stairs_corridor() {
+  std::vector<Vector3d> path;
+  for (double x = -30.0; x < 0.0; x += 0.1) path.emplace_back(x, 0.0, 1.3);
+  for (double x = 0.0; x < 3.0; x += 0.1) path.emplace_back(x, 0.0, 1.3 + 0.6 * x);
+  for (double a = -0.5; a < 0.5; a += 0.05)
+    path.emplace_back(3.6 + 0.7 * std::cos(3.14159 * a), 0.7 + 0.7 * std::sin(3.14159 * a), 3.1);
+  for (double x = 3.0; x > 0.0; x -= 0.1) path.emplace_back(x, 1.4, 3.1 + 0.6 * (3.0 - x));
+  for (double x = 0.0; x > -30.0; x -= 0.1) path.emplace_back(x, 1.4, 4.9);
+  return path;
+}
+
+TEST(Stairs, LevelWaysAreCorridorsThatOpenIntoTheWell) {
+  const PlaceConfig config{.kind = PlaceKind::stairs, .seed = 2, .path_W = corridor_stairs_corridor()};
+  const auto place = made(config);
+  ASSERT_NE(place, nullptr);
+  RayCaster caster(*place, 100.0);
+  for (const auto& [eye, floor_z] :
+       {std::pair(Vector3d(-20.0, 0.0, 1.3), 0.0), std::pair(Vector3d(-20.0, 1.4, 4.9), 3.6)}) {
+    caster.move_to(eye, 0.0);
+    const auto range_m = [&](const Vector3d& direction) { return caster.cast({eye, direction}).range_m; };
+    EXPECT_NEAR(range_m(-Vector3d::UnitZ()), eye.z() - floor_z, 0.2);
+    EXPECT_LT(range_m(Vector3d::UnitZ()), 1.6F);
+    EXPECT_LT(range_m(Vector3d::UnitY()), 1.8F);
+    EXPECT_LT(range_m(-Vector3d::UnitY()), 1.8F);
+    EXPECT_GT(range_m(Vector3d::UnitX()), 20.0F) << "sees into the stairwell";
+    EXPECT_LT(range_m(Vector3d::UnitX()), 30.0F);
+    EXPECT_GT(range_m(-Vector3d::UnitX()), 15.0F);
+  }
 }
 
 TEST(Street, JoinsItsTilesWithoutGaps) {

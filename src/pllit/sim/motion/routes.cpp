@@ -23,7 +23,9 @@ double climbed_m(const Stairs& stairs, double s) {
   return stairs.rise_m * (0.8 * steps + 0.2 * stepwise);
 }
 
+/// s: from the first landing on, before which it is negative.
 Foothold on_stairs(const Stairs& stairs, double s) {
+  if (s < 0.0) return {{s - stairs.landing_m, 0.0, 0.0}, 0.0};
   const double flight_m = stairs.flight_run_m() + 2.0 * stairs.landing_m;
   const double turn_m = 0.5 * kPi * stairs.well_m;
   const int flight = std::min(static_cast<int>(s / (flight_m + turn_m)), stairs.flights - 1);
@@ -31,9 +33,10 @@ Foothold on_stairs(const Stairs& stairs, double s) {
   const bool outward = flight % 2 == 0;
   const double start_x = outward ? -stairs.landing_m : stairs.flight_run_m() + stairs.landing_m;
   const PlanePose start{{start_x, outward ? 0.0 : stairs.well_m}, flight * kPi};
-  PlanePose at = along_arc(start, 0.0, std::min(on_flight, flight_m));
+  const bool last = flight == stairs.flights - 1;
+  PlanePose at = along_arc(start, 0.0, last ? on_flight : std::min(on_flight, flight_m));
   // All turns go to the left: two flights and two landings make one round of the stairwell.
-  if (on_flight > flight_m) at = along_arc(at, 2.0 / stairs.well_m, on_flight - flight_m);
+  if (on_flight > flight_m && !last) at = along_arc(at, 2.0 / stairs.well_m, on_flight - flight_m);
   const double height_m = flight * stairs.flight_rise_m() + climbed_m(stairs, on_flight - stairs.landing_m);
   return {{at.position.x(), at.position.y(), height_m}, at.heading_rad};
 }
@@ -69,8 +72,9 @@ Motion corridor_walk(const CorridorWalk& config) {
 Motion stair_climb(const StairClimb& config) {
   const Stairs& stairs = config.stairs;
   const double flight_m = stairs.flight_run_m() + 2.0 * stairs.landing_m;
-  const double length_m = stairs.flights * flight_m + (stairs.flights - 1) * 0.5 * kPi * stairs.well_m;
-  return walk_way([&](double s) { return on_stairs(stairs, s); }, length_m, kHeight_m,
+  const double length_m =
+      2.0 * stairs.level_m + stairs.flights * flight_m + (stairs.flights - 1) * 0.5 * kPi * stairs.well_m;
+  return walk_way([&](double s) { return on_stairs(stairs, s - stairs.level_m); }, length_m, kHeight_m,
                   {.seed = config.seed, .speed_mps = config.speed_mps, .glance_rad = 0.2});
 }
 

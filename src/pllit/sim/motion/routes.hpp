@@ -26,7 +26,7 @@ struct CorridorWalk {
 Motion corridor_walk(const CorridorWalk& config);
 
 /// A stairwell with half-turn landings, all to the left. The first flight climbs along x from the origin of W, the
-/// second climbs back along y = well_m to x = 0, the third is above the first, and so on.
+/// second climbs back along y = well_m to x = 0, the third is above the first, and so on. Level ways lead there and on.
 struct Stairs {
   int flights = 4;
   int steps = 10;  ///< in each flight
@@ -34,6 +34,7 @@ struct Stairs {
   double going_m = 0.28;
   double well_m = 1.4;     ///< between the centre lines of two flights
   double landing_m = 0.5;  ///< walked straight on before and after each flight
+  double level_m = 0.0;    ///< walked straight on before the first landing and after the last
 
   double flight_run_m() const { return steps * going_m; }
   double flight_rise_m() const { return steps * rise_m; }
@@ -42,7 +43,7 @@ struct Stairs {
 struct StairClimb {
   std::uint64_t seed = 1;
   Stairs stairs{};
-  double speed_mps = 0.5;  ///< along the flights, on the map
+  double speed_mps = 0.5;  ///< on the map
 };
 /// Up all flights in the rhythm of the steps and half a turn on every landing; the IMU is 1.3 m above the
 /// line through the steps' edges.

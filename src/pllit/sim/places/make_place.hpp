@@ -13,8 +13,8 @@ namespace pllit {
 
 enum class PlaceKind {
   room,      ///< an office floor, room after room; walls open where the path passes
-  corridor,  ///< bare parallel walls along the path's main direction, well beyond both its ends
-  stairs,    ///< a stairwell with flights and landings below a path that climbs
+  corridor,  ///< parallel walls with few features along the path's main direction, well beyond both its ends
+  stairs,    ///< a stairwell with flights and landings below a path that climbs, and corridors where it goes on level
   plant,     ///< a hall of pumps, tanks, cabinets, pipes
   street,    ///< houses, parked cars and trees along kilometres
   field      ///< open land with few trees and posts
@@ -48,6 +48,7 @@ struct PlaceConfig {
   double height_m = 1.3;                ///< of the IMU above the ground, as a rule
   double clearance_m = 0.6;             ///< that every surface but the ground keeps from the path; 2.5 suits a car
   Light light = Light::day;
+  bool bare = false;                    ///< corridors: with nothing that tells a LiDAR one metre from the next
   int people = 0;                       ///< at most; fewer where there is no room 1.5 m off the path
   int cars = 0;                         ///< that drive (street), at most
   std::vector<FindingSpec> findings{};  ///< rooms and plants only

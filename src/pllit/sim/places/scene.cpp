@@ -10,7 +10,8 @@ namespace {
 using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
 
-constexpr double kTile_m = 12.0;
+/// The first tile is centred on the origin and holds most rooms as a whole: rays are slowed by each border they cross.
+constexpr double kTile_m = 48.0;
 constexpr double kSlack_m = 0.02;  // kept beyond the clearance: for rounding to float and between the path's points
 
 class AssembledPlace final : public Place {
@@ -85,14 +86,14 @@ void SceneBuilder::add_ground(const Mesh& piece_P) {
   Eigen::AlignedBox3f box;
   for (const Vector3f& v : piece_P.vertices) box.extend(v);
   const Vector3f centre = box.center();
-  const auto cell = [](float v) { return static_cast<int>(std::floor(v / kTile_m)); };
+  const auto cell = [](float v) { return static_cast<int>(std::floor(v / kTile_m + 0.5)); };
   cells_[{cell(centre.x()), cell(centre.y())}].append(piece_P);
 }
 
 void SceneBuilder::build(PlaceParts& parts) const {
   std::vector<Mesh> meshes;
   for (const auto& [cell, mesh_P] : cells_) {
-    const Vector3d origin_P((cell.first + 0.5) * kTile_m, (cell.second + 0.5) * kTile_m, 0.0);
+    const Vector3d origin_P(cell.first * kTile_m, cell.second * kTile_m, 0.0);
     const Vector3d origin_W = site_.T_W_P.act(origin_P);
     Mesh mesh = mesh_P;
     Eigen::AlignedBox3d bounds_W;
