@@ -58,6 +58,9 @@ std::string summary_text(const Json& json) {
   if (const auto doubts = health["doubts"].get<std::string>(); !doubts.empty())
     text += std::format("doubts      {} ({})\n", doubts,
                         json["status"] == "done" ? "therefore exit code 3" : json["status"].get<std::string>());
+  if (json.contains("loops"))
+    text += std::format("loops       {} closed, {} candidates refused\n", json["loops"]["accepted"].get<int>(),
+                        json["loops"]["rejected"].get<int>());
   if (json.contains("ape"))
     text += std::format("APE         rmse {:.4f} m, median {:.4f} m, max {:.4f} m ({} poses)\n",
                         json["ape"]["rmse"].get<double>(), json["ape"]["median"].get<double>(),

@@ -20,6 +20,7 @@
 #include "pllit/slam/run.hpp"
 #include "program.hpp"
 #include "progress_bar.hpp"
+#include "session_loops.hpp"
 #include "source.hpp"
 #include "summary.hpp"
 
@@ -71,6 +72,14 @@ Expected<void> write_thermography(SessionWriter& session, const Thermography& th
   return session.write_cloud("anomalies.ply", thermography.anomaly_points());
 }
 
+/// The same frames to loop closing as well.
+FrameSink with_loops(FrameSink sink, LoopStage& loops) {
+  return [sink = std::move(sink), &loops](const FrameEstimate& frame) -> Expected<void> {
+    loops.take(frame);
+    return sink(frame);
+  };
+}
+
 nlohmann::ordered_json run_json(const RunSummary& summary, const Options& options, const Config& config,
                                 const char* status) {
   nlohmann::ordered_json json = summary_json(summary);
@@ -110,6 +119,7 @@ class SessionRun {
         stop_(std::move(stop)),
         map_(config.map_file_voxel_m, config.map.radius_m) {
     if (source_.rig.camera && config.vision.enabled) thermography_.emplace(*source_.rig.camera, config.thermography);
+    if (config.loop.enabled) loop_stage_.emplace(config.loop);
   }
 
   Expected<ExitCode> operator()() {
@@ -120,24 +130,37 @@ class SessionRun {
     // What a kill leaves behind says of itself that it is unfinished.
     if (auto done = session_.write_run(run_json(summary, options_, config_, "unfinished")); !done)
       return std::unexpected(done.error());
-    const auto result = run(summary);
+    auto result = run(summary);
+    if (const auto closed = close_loops(summary); result && !closed) result = closed;
     return finish(summary, result);
   }
 
  private:
   Expected<void> run(RunSummary& summary) {
     ProgressBar bar("frames", spdlog::should_log(spdlog::level::info));
-    const RunHooks hooks{.sink = session_sink(session_, map_, thermography_),
+    const FrameSink sink = session_sink(session_, map_, thermography_);
+    const RunHooks hooks{.sink = loop_stage_ ? with_loops(sink, *loop_stage_) : sink,
                          .progress = [&](double share) { bar.show(share, summary.frames); },
                          .stop = stop_,
                          .thermography = thermography_ ? &*thermography_ : nullptr};
     return run_odometry(*source_.events, source_.rig, config_, hooks, summary);
   }
 
+  /// However the run ended: what was seen until then closes too.
+  Expected<void> close_loops(RunSummary& summary) {
+    if (!loop_stage_) return {};
+    loops_ = loop_stage_->finish();
+    summary.stage_ms[static_cast<std::size_t>(Stage::loop)] = loops_.frame_ms;
+    if (!loops_.stopped.empty()) summary.notes.push_back("loop closing stopped: " + loops_.stopped);
+    return write_loops(session_, loops_);
+  }
+
   Expected<ExitCode> finish(const RunSummary& summary, const Expected<void>& result) {
     const char* status = !result ? "failed" : summary.interrupted ? "interrupted" : "done";
     auto json = run_json(summary, options_, config_, status);
     if (!result) json["error"] = result.error().message;
+    json["loops"] = {{"accepted", loops_.accepted},
+                     {"rejected", loops_.records.size() - static_cast<std::size_t>(loops_.accepted)}};
     const auto scene = source_.scene_json ? write_file(session_.folder() / "scene.json", source_.scene_json() + "\n")
                                           : Expected<void>{};
     const auto heat = thermography_ ? write_thermography(session_, *thermography_) : Expected<void>{};
@@ -181,6 +204,8 @@ class SessionRun {
   std::stop_token stop_;
   MapRecorder map_;
   std::optional<Thermography> thermography_;  // none without a camera
+  std::optional<LoopStage> loop_stage_;  // none where loop closing is off
+  LoopResult loops_;
 };
 
 Expected<ExitCode> run_session(const Options& options) {

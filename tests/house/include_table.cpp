@@ -23,7 +23,8 @@ const std::map<std::string, std::set<std::string>> table{
     {"lidar", {"base", "geometry", "sensor", "state"}},
     {"thermal", {"base", "geometry", "sensor", "state"}},
     {"map", {"base", "geometry", "sensor", "state"}},
-    {"slam", {"base", "geometry", "sensor", "state", "lidar", "thermal", "map"}},
+    {"loop", {"base", "geometry", "sensor", "state"}},
+    {"slam", {"base", "geometry", "sensor", "state", "lidar", "thermal", "map", "loop"}},
     {"io", {"base", "geometry", "sensor", "state"}},
     {"sim", {"base", "geometry", "sensor", "state"}},
     {"eval", {"base", "geometry", "sensor", "state"}},
@@ -61,6 +62,18 @@ TEST(House, RosHeadersStayOutOfTheProgram) {
     std::ifstream stream(entry.path());
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     EXPECT_FALSE(std::regex_search(text, ros)) << entry.path();
+  }
+}
+
+TEST(House, GtsamStaysInsideLoopClosing) {
+  const std::regex gtsam(R"(#\s*include\s*[<"]gtsam/)");
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(PLLIT_SOURCE_DIR) / "src/pllit")) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream stream(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (!std::regex_search(text, gtsam)) continue;
+    EXPECT_EQ(entry.path().parent_path().filename(), "loop") << entry.path();
+    EXPECT_TRUE(entry.path().extension() == ".cpp" || entry.path().filename() == "gtsam_factors.hpp") << entry.path();
   }
 }
 

@@ -9,6 +9,7 @@
 #include "pllit/lidar/downsample.hpp"
 #include "pllit/lidar/plane_map.hpp"
 #include "pllit/lidar/plane_residuals.hpp"
+#include "pllit/loop/loop_config.hpp"
 #include "pllit/sensor/rig.hpp"
 #include "pllit/slam/drift.hpp"
 #include "pllit/slam/health.hpp"
@@ -79,6 +80,7 @@ struct Config {
   HealthConfig health;
   VisionConfig vision;
   ThermographyConfig thermography;
+  LoopConfig loop;
 };
 
 /// Equal in every key.

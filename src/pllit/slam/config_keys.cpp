@@ -55,10 +55,6 @@ void list(Section section, PlaneMapConfig& config) {
   section.add(PLLIT_KEY(voxel_m),
               "Voxel of the LiDAR map (planes span two of them): 0.4 serves most places, 0.2 narrow rooms.", "m",
               {0.05, 10.0});
-  section.add(PLLIT_KEY(radius_m), "How far around the rig the map for matching reaches; older parts are forgotten.",
-              "m", {5.0, 2000.0});
-  section.add(PLLIT_KEY(memory_mb), "Most memory that the map for matching may take; beyond it the radius shrinks.",
-              "MB", {16.0, 1048576.0});
 }
 
 void list_noise(Section section, RigConfig& rig) {
@@ -77,6 +73,10 @@ void list_noise(Section section, RigConfig& rig) {
 }
 
 void list_details(Section section, PlaneMapConfig& config) {
+  section.add(PLLIT_KEY(radius_m), "How far around the rig the map for matching reaches; older parts are forgotten.",
+              "m", {5.0, 2000.0});
+  section.add(PLLIT_KEY(memory_mb), "Most memory that the map for matching may take; beyond it the radius shrinks.",
+              "MB", {16.0, 1048576.0});
   section.add(PLLIT_KEY(coarse_factor),
               "Voxel of the second grid, used where the first has too few points, as a multiple.", "", {1.0, 20.0});
   section.add(PLLIT_KEY(min_points), "Fewer points make no plane.", "", {4.0, 1000.0});
@@ -191,6 +191,8 @@ KeyList keys_of(Config& config) {
           {0.001, 10.0});
   list_thermal(root.section("thermal", "What images do, thermal or visible."), config.vision);
   list_features(root.section("features", "What is looked for in images."), config.vision);
+  root.section("loop", "Loop closing: earlier places that are met again straighten the trajectory and the map.")
+      .add_switch("enabled", config.loop.enabled, "Close loops; odometry.tum stays as it is without.");
   root.add(PLLIT_KEY(threads), "Threads for the heavy loops; 0: one for every core. Results do not depend on it.", "",
            {0.0, 256.0});
   Section advanced = root.section("advanced", "For experts: the defaults serve nearly everyone.");
@@ -207,6 +209,7 @@ KeyList keys_of(Config& config) {
   list_anomalies(advanced.section("anomalies", "The thermographic map, and what counts as abnormally hot."),
                  config.thermography);
   list(advanced.section("health", "When a frame is called degraded or lost."), config.health);
+  list_loop(advanced.section("loop", "How loops are found and checked."), config.loop);
   return keys;
 }
 

@@ -6,6 +6,7 @@ namespace pllit {
 void list_thermal(Section section, VisionConfig& config) {
   section.add_switch(PLLIT_KEY(enabled), "Refine the LiDAR's pose with the images, thermal or visible.");
   section.add_switch(PLLIT_KEY(photometric), "Calibrate the greys of 8-bit images against gain control.");
+  section.add_switch("weights", config.residuals.weights, "Give points on matched lines more weight.");
 }
 
 void list_features(Section section, VisionConfig& config) {
@@ -33,11 +34,12 @@ void list_vision(Section section, VisionConfig& config) {
   section.add("keyframes", config.keyframes.most, "Keyframes that images are matched with.", "", {3.0, 50.0});
   section.add("point_sigma_px", config.residuals.point_sigma_px, "Noise of a matched point, one sigma.", "px",
               {0.05, 50.0});
+  section.add("line_sigma_px", config.residuals.line_sigma_px, "Noise of a line's end across it, one sigma.", "px",
+              {0.05, 50.0});
   section.add("gate", config.residuals.gate, "Residuals beyond this many standard deviations do not count.", "",
               {0.1, 100.0});
   section.add("max_information", config.residuals.max_information,
               "Independent points that an image counts for at most; 0: every one counts.", "", {0.0, 1e6});
-  section.add_switch("weights", config.residuals.weights, "Give points on matched lines more weight.");
   section.add("weight_gain", config.residuals.weight_gain, "Weight of a point on a line (the paper's eta).", "",
               {1.0, 10.0});
   section.add("weight_sigma_px", config.residuals.weight_sigma_px,

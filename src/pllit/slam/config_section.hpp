@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,5 +59,7 @@ void list_features(Section section, VisionConfig& config);
 void list_vision(Section section, VisionConfig& config);
 /// The keys of advanced.anomalies.
 void list_anomalies(Section section, ThermographyConfig& config);
+/// The keys of advanced.loop.
+void list_loop(Section section, LoopConfig& config);
 
 }  // namespace pllit

@@ -1,5 +1,6 @@
 #include "pllit/slam/frame_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -68,6 +69,47 @@ std::vector<FrameCell> health_row(const FrameEstimate& frame) {
           facts.image.gain,
           facts.image.bias_grey,
           std::accumulate(frame.stage_ms.begin(), frame.stage_ms.end(), 0.0)};
+}
+
+std::vector<std::string> loop_columns() {
+  return {"later_s", "earlier_s",   "found_by",         "distance_m", "score",    "columns",  "overlap", "matched",
+          "rmse_m",  "information", "odometry_squared", "odometry_m", "agreeing", "accepted", "reason"};
+}
+
+std::vector<FrameCell> loop_row(const LoopRecord& record) {
+  const Registration& registration = record.registration;
+  return {to_seconds(record.later_time),
+          to_seconds(record.earlier_time),
+          std::string(record.found_by == FoundBy::radius ? "radius" : "descriptor"),
+          record.distance_m,
+          record.score,
+          registration.columns.score,
+          registration.overlap,
+          registration.matched,
+          registration.rmse_m,
+          registration.information,
+          record.squared_against_odometry,
+          record.against_odometry_m,
+          static_cast<std::int64_t>(record.agreeing),
+          static_cast<std::int64_t>(record.accepted ? 1 : 0),
+          record.accepted || !record.reason.empty() ? record.reason : "no other loop agrees"};
+}
+
+void move_points(PointTable& map, const Correction& correction, const Trajectory& odometry) {
+  const auto times = std::ranges::find(map.fields, "time", &ScalarField::name);
+  if (odometry.empty() || times == map.fields.end()) return;
+  std::size_t frame = odometry.size();  // none yet
+  SE3 T_M_O;
+  for (std::size_t i = 0; i < map.points.size(); ++i) {
+    const Time time = odometry.front().time + from_seconds(times->values[i]);
+    const auto after = std::ranges::lower_bound(odometry, time - std::chrono::milliseconds(5), {}, &StampedPose::time);
+    const auto own = static_cast<std::size_t>(std::min(after, odometry.end() - 1) - odometry.begin());
+    if (own != frame) {
+      frame = own;
+      T_M_O = correction.T_M_O(odometry[own].time, odometry[own].T_W_I);
+    }
+    map.points[i] = T_M_O.act(map.points[i].cast<double>()).cast<float>();
+  }
 }
 
 PointTable MapRecorder::new_points(const FrameEstimate& frame) {

@@ -1,4 +1,4 @@
-// A frame as plain values for writers: a row of health.csv and new points of the map.
+// Frames and loops as plain values for writers: rows of health.csv and loops.csv, points of the map.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "pllit/loop/correction.hpp"
+#include "pllit/loop/loop_record.hpp"
 #include "pllit/slam/odometry.hpp"
 #include "pllit/state/table.hpp"
 
@@ -17,6 +19,14 @@ using FrameCell = std::variant<double, std::int64_t, std::string>;
 std::vector<std::string> health_columns();
 /// What a frame showed: state and reasons, what was matched, how sure the pose is, and the time it took.
 std::vector<FrameCell> health_row(const FrameEstimate& frame);
+
+/// Names of the cells of loop_row, in its order.
+std::vector<std::string> loop_columns();
+/// What spoke for and against a candidate for a loop, and what became of it.
+std::vector<FrameCell> loop_row(const LoopRecord& record);
+
+/// Moves points of the map where their frames went; field `time` tells which frame gave a point (MapRecorder).
+void move_points(PointTable& map, const Correction& correction, const Trajectory& odometry);
 
 /// Turns frames into the map that is written: each voxel of the world gives its first point, in W.
 class MapRecorder {
