@@ -11,7 +11,7 @@
 namespace pllit::bench {
 
 struct KeyframeRun {
-  std::vector<Keyframe> keyframes;
+  std::vector<LoopKeyframe> keyframes;
   Trajectory truth;  ///< at their times
   double odometry_ms = 0.0, duration_s = 0.0;
 };
@@ -27,7 +27,7 @@ inline void write_keyframes(const std::filesystem::path& path, const KeyframeRun
   put(&run.odometry_ms, sizeof run.odometry_ms);
   put(&run.duration_s, sizeof run.duration_s);
   for (std::size_t k = 0; k < count; ++k) {
-    const Keyframe& keyframe = run.keyframes[k];
+    const LoopKeyframe& keyframe = run.keyframes[k];
     put(&keyframe.time, sizeof keyframe.time);
     put(keyframe.T_O_I.coeffs().data(), 7 * sizeof(double));
     put(run.truth[k].T_W_I.coeffs().data(), 7 * sizeof(double));
@@ -58,7 +58,7 @@ inline KeyframeRun read_keyframes(const std::filesystem::path& path) {
   get(&run.odometry_ms, sizeof run.odometry_ms);
   get(&run.duration_s, sizeof run.duration_s);
   for (std::size_t k = 0; k < count; ++k) {
-    Keyframe keyframe;
+    LoopKeyframe keyframe;
     get(&keyframe.time, sizeof keyframe.time);
     keyframe.T_O_I = pose();
     run.truth.push_back({keyframe.time, pose()});

@@ -70,7 +70,7 @@ ForthAndBack forth_and_back(EventSource& source) {
 /// An odometry's keyframes with the poses of all its frames. The car does not stop where the recording is turned, so each way has
 /// an odometry of its own.
 struct Leg {
-  std::vector<Keyframe> keyframes;
+  std::vector<LoopKeyframe> keyframes;
   std::vector<SE3> frames_O_I;
 };
 
@@ -104,9 +104,9 @@ TEST(LoopCloser, ClosesARealDriveForthAndBackOnItself) {
 
   // The way back begins where the last scan of the way forth ended.
   const SE3 T_O_back = forth.frames_O_I.back() * back.frames_O_I.front().inverse();
-  std::vector<Keyframe> keyframes = forth.keyframes;
+  std::vector<LoopKeyframe> keyframes = forth.keyframes;
   const double forth_m = keyframes.back().way_m;
-  for (Keyframe keyframe : back.keyframes) {
+  for (LoopKeyframe keyframe : back.keyframes) {
     keyframe.T_O_I = T_O_back * keyframe.T_O_I;
     keyframe.way_m += forth_m;
     if (keyframe.step_covariance.isZero())
@@ -114,7 +114,7 @@ TEST(LoopCloser, ClosesARealDriveForthAndBackOnItself) {
     keyframes.push_back(std::move(keyframe));
   }
   LoopCloser closer(config->loop);
-  for (const Keyframe& keyframe : keyframes) closer.add(keyframe);
+  for (const LoopKeyframe& keyframe : keyframes) closer.add(keyframe);
   closer.finish();
 
   // The truth at each keyframe: on the way back that of the mirrored time.

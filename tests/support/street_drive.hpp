@@ -43,9 +43,9 @@ inline Trajectory up_and_back_path(double straight_m, double lane_m, double spee
 
 /// Keyframes every two metres of a simulation, each with the scans since the one before, de-skewed and placed by the
 /// truth. Every `nth` point is used.
-inline std::vector<Keyframe> true_keyframes(Simulation& simulation, std::size_t nth) {
+inline std::vector<LoopKeyframe> true_keyframes(Simulation& simulation, std::size_t nth) {
   constexpr double spacing_m = 2.0, scan_every_m = 0.5, voxel_m = 0.3;
-  std::vector<Keyframe> keyframes;
+  std::vector<LoopKeyframe> keyframes;
   std::vector<Vector3f> points_W;
   Vector3d last_p_W = Vector3d::Zero(), last_scan_W = Vector3d::Constant(1e9);
   double way_m = 0.0;
@@ -63,7 +63,7 @@ inline std::vector<Keyframe> true_keyframes(Simulation& simulation, std::size_t 
         points_W.push_back(T_W_L.act(scan->points_L[i].cast<double>()).cast<float>());
     }
     if (!keyframes.empty() && way_m - keyframes.back().way_m < spacing_m) continue;
-    Keyframe keyframe{.time = scan->end(), .T_O_I = T_W_I, .way_m = way_m, .cloud = {}};
+    LoopKeyframe keyframe{.time = scan->end(), .T_O_I = T_W_I, .way_m = way_m, .cloud = {}};
     keyframe.up_I = T_W_I.rotation().transpose() * Vector3d::UnitZ();
     keyframe.up_sigma_rad = 1e-3;
     keyframe.step_covariance.diagonal() << Vector3d::Constant(1e-8), Vector3d::Constant(1e-6);
@@ -77,7 +77,7 @@ inline std::vector<Keyframe> true_keyframes(Simulation& simulation, std::size_t 
 }
 
 /// The whole drive by a rig, 60 m up: about 210 m.
-inline std::vector<Keyframe> up_and_back(SimConfig::RigName rig, std::uint64_t seed) {
+inline std::vector<LoopKeyframe> up_and_back(SimConfig::RigName rig, std::uint64_t seed) {
   SimConfig config;
   config.scene = SceneKind::street;
   config.rig = rig;
