@@ -56,7 +56,6 @@ class Replay {
     const ThermographyFrame frame = stage_.process({.time = time,
                                                     .T_W_C = *T_W_I * rig_.T_I_C,
                                                     .raw = image->counts,
-                                                    .greys = {},
                                                     .points_W = std::exchange(scan_, {}),
                                                     .planes = &planes_});
     ms_.add(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());

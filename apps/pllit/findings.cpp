@@ -22,7 +22,7 @@ fs::path truth_of(const fs::path& scene, const fs::path& session) {
 Expected<SE3> world_alignment(const fs::path& scene, const fs::path& session, Alignment alignment) {
   const auto truth = read_tum(truth_of(scene, session));
   if (!truth) return std::unexpected(truth.error());
-  const auto estimate = read_interrupted_tum(session / "odometry.tum");
+  const auto estimate = read_interrupted_tum(session / "trajectory.tum");
   if (!estimate) return std::unexpected(estimate.error());
   const auto scores = evaluate(*truth, *estimate, {.alignment = alignment, .rpe_deltas_m = {}});
   if (!scores) return std::unexpected(scores.error());

@@ -11,7 +11,7 @@
 namespace pllit::app {
 
 /// Scores SESSION/anomalies.json against a scene. The world of the session is aligned with that of the truth by its
-/// odometry, which they were found with: SESSION/truth.tum, or else F.tum beside F.scene.json.
+/// trajectory: SESSION/truth.tum, or else F.tum beside F.scene.json.
 Expected<FindingScores> score_session_findings(const std::filesystem::path& scene, const std::filesystem::path& session,
                                                Alignment alignment);
 /// For people; `findings` as findings_json() makes it.

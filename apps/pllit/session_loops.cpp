@@ -26,7 +26,7 @@ Expected<void> write_loops(SessionWriter& session, const LoopResult& loops) {
   if (const auto done = session.replace_trajectory(loops.correction.corrected(*odometry)); !done) return done;
   auto map = read_ply(session.folder() / "map.ply");
   if (!map) return std::unexpected(map.error());
-  move_points(*map, loops.correction, *odometry);
+  if (!odometry->empty()) move_points(*map, "time", odometry->front().time, loops.correction, *odometry);
   return session.replace_map(*map);
 }
 

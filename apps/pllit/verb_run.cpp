@@ -1,6 +1,7 @@
 // pllit run: a recording or a simulation becomes a session: trajectory, map and health record.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -11,7 +12,6 @@
 #include "interrupt.hpp"
 #include "pllit/eval/evaluate.hpp"
 #include "pllit/eval/scores_json.hpp"
-#include "pllit/io/anomalies_file.hpp"
 #include "pllit/io/file.hpp"
 #include "pllit/io/session.hpp"
 #include "pllit/io/tum.hpp"
@@ -20,6 +20,7 @@
 #include "pllit/slam/run.hpp"
 #include "program.hpp"
 #include "progress_bar.hpp"
+#include "session_heat.hpp"
 #include "session_loops.hpp"
 #include "source.hpp"
 #include "summary.hpp"
@@ -32,44 +33,20 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<std::string> sources, settings;
   std::string config, out, truth;
-  bool json = false;
+  bool json = false, events = false, alarm_exit = false;
 };
 
-Expected<void> write_anomalies(SessionWriter& session, const Thermography& thermography) {
-  const auto json = anomalies_json(thermography.anomalies(), thermography.config().unit);
-  return session.write_text("anomalies.json", json.dump(2) + "\n");
-}
-
-/// Writes what has been found each time an alarm is raised, so that a kill loses none; and says so.
-Expected<void> tell_alarms(SessionWriter& session, const Thermography& thermography, Time time) {
-  bool raised = false;
-  for (const Anomaly& anomaly : thermography.anomalies()) {
-    if (anomaly.confirmed != time) continue;
-    raised = true;
-    const Vector3d& p_W = anomaly.position_W;
-    spdlog::warn("alarm {}: {} at ({:.2f}, {:.2f}, {:.2f}) m, {:.1f} sigma above normal", anomaly.id,
-                 name_of(anomaly.kind), p_W.x(), p_W.y(), p_W.z(), anomaly.mean_sigmas);
-  }
-  return raised ? write_anomalies(session, thermography) : Expected<void>{};
-}
-
 /// Hands frames to the session: poses and health as they come, points that are new to the map, alarms.
-FrameSink session_sink(SessionWriter& session, MapRecorder& map, const std::optional<Thermography>& thermography) {
+FrameSink session_sink(SessionWriter& session, MapRecorder& map, const std::optional<Thermography>& thermography,
+                       AlarmTeller& alarms) {
   return [&](const FrameEstimate& frame) -> Expected<void> {
     const NavState& state = frame.posterior.mean;
     if (auto done = session.append_pose({state.time, state.T_W_I()}); !done) return done;
     if (auto done = session.append_health(health_row(frame)); !done) return done;
     if (thermography)
-      if (auto done = tell_alarms(session, *thermography, state.time); !done) return done;
+      if (auto done = alarms.tell(session, *thermography, state.time); !done) return done;
     return session.append_map(map.new_points(frame));
   };
-}
-
-/// What the thermographic stage leaves behind.
-Expected<void> write_thermography(SessionWriter& session, const Thermography& thermography) {
-  if (auto done = write_anomalies(session, thermography); !done) return done;
-  if (auto done = session.write_cloud("thermal_map.ply", thermography.map().table()); !done) return done;
-  return session.write_cloud("anomalies.ply", thermography.anomaly_points());
 }
 
 /// The same frames to loop closing as well.
@@ -117,7 +94,8 @@ class SessionRun {
         truth_(std::move(truth)),
         session_(std::move(session)),
         stop_(std::move(stop)),
-        map_(config.map_file_voxel_m, config.map.radius_m) {
+        map_(config.map_file_voxel_m, config.map.radius_m),
+        alarms_(options.events) {
     if (source_.rig.camera && config.vision.enabled) thermography_.emplace(*source_.rig.camera, config.thermography);
     if (config.loop.enabled) loop_stage_.emplace(config.loop);
   }
@@ -138,7 +116,7 @@ class SessionRun {
  private:
   Expected<void> run(RunSummary& summary) {
     ProgressBar bar("frames", spdlog::should_log(spdlog::level::info));
-    const FrameSink sink = session_sink(session_, map_, thermography_);
+    const FrameSink sink = session_sink(session_, map_, thermography_, alarms_);
     const RunHooks hooks{.sink = loop_stage_ ? with_loops(sink, *loop_stage_) : sink,
                          .progress = [&](double share) { bar.show(share, summary.frames); },
                          .stop = stop_,
@@ -163,21 +141,29 @@ class SessionRun {
                      {"rejected", loops_.records.size() - static_cast<std::size_t>(loops_.accepted)}};
     const auto scene = source_.scene_json ? write_file(session_.folder() / "scene.json", source_.scene_json() + "\n")
                                           : Expected<void>{};
-    const auto heat = thermography_ ? write_thermography(session_, *thermography_) : Expected<void>{};
+    const auto heat = thermography_ ? write_heat(session_, *thermography_, loops_) : Expected<void>{};
     auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
     if (scored && heat && thermography_ && source_.scene_json && summary.frames > 1) scored = add_findings(json);
     if (!scored) json["notes"].push_back(scored.error().message);
     const auto written = session_.write_run(json);
+    const auto reported = heat ? write_report(session_, json, thermography_ ? &*thermography_ : nullptr) : heat;
     print(json);
     // What stopped the run comes first: a full disk hits these files too.
-    for (const auto* done : {&result, &written, &scene, &heat})
+    for (const auto* done : {&result, &written, &scene, &heat, &reported})
       if (!*done) return report(done->error());
     if (summary.interrupted) {
       spdlog::warn("interrupted; what was done is in {}", session_.folder().string());
       return ExitCode::failed;
     }
     if (!scored && !options_.truth.empty()) return report(scored.error());
+    if (options_.alarm_exit && alarmed()) return ExitCode::alarm;
     return summary.was_degraded() ? ExitCode::degraded : ExitCode::done;
+  }
+
+  /// Whether anything is, or was, abnormally hot.
+  bool alarmed() const {
+    return thermography_ && std::ranges::any_of(thermography_->anomalies(),
+                                                [](const Anomaly& anomaly) { return anomaly.confirmed.has_value(); });
   }
 
   /// Scores the anomalies against what the simulator put there.
@@ -203,8 +189,9 @@ class SessionRun {
   SessionWriter session_;
   std::stop_token stop_;
   MapRecorder map_;
+  AlarmTeller alarms_;
   std::optional<Thermography> thermography_;  // none without a camera
-  std::optional<LoopStage> loop_stage_;  // none where loop closing is off
+  std::optional<LoopStage> loop_stage_;       // none where loop closing is off
   LoopResult loops_;
 };
 
@@ -249,6 +236,8 @@ Verb add_run(CLI::App& program) {
       ->take_all()
       ->expected(1);
   verb->add_flag("--json", options->json, "Print the summary as JSON");
+  verb->add_flag("--events", options->events, "Print a line of JSON whenever an anomaly appears or changes its state");
+  verb->add_flag("--alarm-exit", options->alarm_exit, "Exit with 4 where an alarm was raised");
   verb->footer(
       "Examples:\n"
       "  pllit run 'sim:box_room?seed=1&duration=30'\n"

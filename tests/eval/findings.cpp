@@ -63,7 +63,8 @@ TEST(Findings, TakeTheLargestOfSeveralAlarmsForThePositionAndTheFirstForTheDelay
 
 TEST(Findings, AreComparedInTheWorldOfTheTruth) {
   const SE3 T_W_V(Vector3d(10.0, 0.0, 0.0), exp_so3({0.0, 0.0, 0.5}));
-  EXPECT_NEAR(scored({alarm(1, T_W_V.inverse().act({1.0, 2.0, 0.8}), 51.0)}, T_W_V).position_m.at(0), 0.0, 1e-9);
+  EXPECT_NEAR(scored({alarm(1, T_W_V.inverse().act(Vector3d(1.0, 2.0, 0.8)), 51.0)}, T_W_V).position_m.at(0), 0.0,
+              1e-9);
 }
 
 TEST(Findings, HaveTheKeysThatWerePromised) {

@@ -37,6 +37,10 @@ TEST(VoxelTable, BehavesAsAStdMapOnRandomOperations) {
       std::erase_if(twin, [&](const auto& entry) { return !even(entry.first, entry.second); });
     }
   }
+  const auto by_three = [](VoxelKey, int value) { return value % 3 == 0; };
+  for (std::size_t at = 0, seen = 0; seen < table.slots(); seen += 100) at = table.retain_some(at, 100, by_three);
+  std::erase_if(twin, [&](const auto& entry) { return !by_three(entry.first, entry.second); });
+  EXPECT_GT(twin.size(), 100u);
   EXPECT_EQ(table.size(), twin.size());
   for (const auto& [key, value] : twin) {
     ASSERT_NE(table.find(key), nullptr);

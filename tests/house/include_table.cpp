@@ -28,6 +28,7 @@ const std::map<std::string, std::set<std::string>> table{
     {"io", {"base", "geometry", "sensor", "state"}},
     {"sim", {"base", "geometry", "sensor", "state"}},
     {"eval", {"base", "geometry", "sensor", "state"}},
+    {"report", {"base", "geometry", "sensor", "state", "lidar", "thermal", "map", "loop", "slam", "eval"}},
 };
 
 std::vector<std::string> included_folders(const fs::path& file) {

@@ -78,6 +78,16 @@ TEST(Downsample, DoesNotMoveAWallThatLiesNearAVoxelBorder) {
   }
 }
 
+TEST(Downsample, MovesCloserWhereTooFewPointsRemain) {
+  const PointCloud room = random_cloud(3, 5000);  // spread over what is too small for many points a metre apart
+  const std::size_t few = downsample(room, 4.0).points_I.size();
+  const std::size_t more = downsample(room, 4.0, 2 * few).points_I.size();
+  EXPECT_GE(more, 2 * few);
+  EXPECT_LT(more, 20 * few);
+  EXPECT_EQ(downsample(room, 4.0, few / 2).points_I.size(), few);
+  EXPECT_EQ(downsample(random_cloud(3, 5), 0.1, 100).points_I.size(), 5u);
+}
+
 TEST(Thin, KeepsAnEvenShareInOrder) {
   const PointCloud kept = thin(random_cloud(2, 1000), 250);
   ASSERT_EQ(kept.points_I.size(), 250u);

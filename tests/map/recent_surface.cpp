@@ -38,7 +38,7 @@ TEST(RecentSurface, KeepsOnePointAVoxelWithItsNormal) {
 
 TEST(RecentSurface, ForgetsWhatIsOldOrFar) {
   Random random(1);
-  RecentSurface surface({.radius_m = 10.0, .memory_s = 2.0});
+  RecentSurface surface({.radius_m = 10.0, .memory_m = 100.0, .memory_s = 2.0});
   surface.add(square(random, 2.0, 500), Vector3d::Zero(), at(0), towards_camera);
   EXPECT_GT(surface.size(), 100u);
   surface.add(std::vector<Vector3f>{{0.0F, 0.0F, 30.0F}, {0.0F, 0.0F, 5.0F}}, Vector3d::Zero(), at(3000),
@@ -46,6 +46,16 @@ TEST(RecentSurface, ForgetsWhatIsOldOrFar) {
   ASSERT_EQ(surface.points(kAhead).points_W.size(), 1u);
   EXPECT_LT((surface.points(kAhead).points_W[0] - Vector3f(0.0F, 0.0F, 5.0F)).norm(), 1e-5F);
   surface.add({}, Vector3d(0.0, 0.0, 20.0), at(4500), towards_camera);
+  EXPECT_TRUE(surface.points(kAhead).points_W.empty());
+}
+
+TEST(RecentSurface, ForgetsWhatWasSeenFromElsewhere) {
+  Random random(4);
+  RecentSurface surface({.memory_m = 0.5});
+  surface.add(square(random, 2.0, 500), Vector3d::Zero(), at(0), towards_camera);
+  surface.add({}, Vector3d(0.4, 0.0, 0.0), at(100), towards_camera);
+  EXPECT_FALSE(surface.points(kAhead).points_W.empty());
+  surface.add({}, Vector3d(0.2, 0.0, 0.0), at(200), towards_camera);  // there and back is way too
   EXPECT_TRUE(surface.points(kAhead).points_W.empty());
 }
 

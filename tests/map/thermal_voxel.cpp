@@ -34,7 +34,7 @@ struct Shown {
 
 TEST(ThermalVoxel, LearnsMeanAndSpreadAsOneWouldFromAllImagesAtOnce) {
   Random random(1);
-  Shown shown{.config = {.noise = 0.01}, .voxel = {}};
+  Shown shown{.config = {.noise = 0.01, .learned_views = 1}, .voxel = {}};
   std::vector<double> values;
   for (int i = 0; i < shown.config.learned_after; ++i) values.push_back(100.0 + random.normal(5.0));
   double mean = 0.0, squares = 0.0;
@@ -45,6 +45,22 @@ TEST(ThermalVoxel, LearnsMeanAndSpreadAsOneWouldFromAllImagesAtOnce) {
   EXPECT_NEAR(static_cast<double>(shown.voxel.mean), mean, 1e-3);
   EXPECT_NEAR(static_cast<double>(shown.voxel.sigma(shown.config)),
               std::sqrt(squares / static_cast<double>(values.size() - 1)), 1e-3);
+}
+
+TEST(ThermalVoxel, IsLearnedFromTwoViewpointsOrInALongLookFromOne) {
+  Random random(7);
+  Shown walking;  // a view in two and a half seconds
+  walking.noisy(random, 100.0, 5.0, 20);
+  EXPECT_FALSE(walking.voxel.learned(walking.config));
+  walking.noisy(random, 100.0, 5.0, 10);
+  EXPECT_TRUE(walking.voxel.learned(walking.config));
+  EXPECT_NEAR(static_cast<double>(walking.voxel.sigma(walking.config)), 5.0, 2.0);
+  Shown standing{.config = {.noise = 4.0, .learned_views = 1000}};
+  standing.noisy(random, 100.0, 5.0, 59);
+  EXPECT_FALSE(standing.voxel.learned(standing.config));
+  standing.noisy(random, 100.0, 5.0, 1);
+  EXPECT_TRUE(standing.voxel.learned(standing.config));
+  EXPECT_NEAR(static_cast<double>(standing.voxel.sigma(standing.config)), 5.0, 2.0);
 }
 
 TEST(ThermalVoxel, FollowsWhatDriftsSlowly) {
@@ -103,7 +119,7 @@ TEST(ThermalVoxel, KeepsFalseAlarmsToWhatTheArithmeticOfThreeSigmaSays) {
   Random random(3);
   int beyond = 0, hot_at_3 = 0, hot_at_5 = 0;
   for (int i = 0; i < kVoxels; ++i) {
-    Shown loose{.config = {.noise = 4.0, .learned_after = 60, .min_change = 12.0}, .voxel = {}};
+    Shown loose{.config = {.noise = 4.0, .learned_after = 60, .learned_views = 1, .min_change = 12.0}, .voxel = {}};
     Shown strict;
     for (int image = 0; image < kImages; ++image) {
       const double value = 100.0 + random.normal(4.0);

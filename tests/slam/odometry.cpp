@@ -79,6 +79,40 @@ TEST(Odometry, LosesNoScanToItsStart) {
   EXPECT_TRUE(run.summary.start->still);  // although the simulated gyroscope has a bias of a degree a second
 }
 
+/// A recording whose first scan has lost all but some points, as where an image cuts it off.
+class FirstScanCutShort : public EventSource {
+ public:
+  FirstScanCutShort(EventSource& source, std::size_t points) : source_(source), points_(points) {}
+  Expected<std::optional<SensorEvent>> next() override {
+    auto event = source_.next();
+    if (!event || !*event || cut_) return event;
+    if (auto* scan = std::get_if<LidarScan>(&(*event)->data)) {
+      cut_ = true;
+      scan->points_L.resize(points_);
+      scan->offsets.resize(points_);
+      scan->intensity.resize(points_);
+      scan->rings.resize(std::min(points_, scan->rings.size()));
+    }
+    return event;
+  }
+
+ private:
+  EventSource& source_;
+  std::size_t points_;
+  bool cut_ = false;
+};
+
+TEST(Odometry, TakesAFirstScanOfAFewPointsForNoMapYet) {
+  auto simulation = open_simulation("sim:box_room?duration=5&lidar=ring16&seed=8");
+  FirstScanCutShort source(*simulation, 300);
+  RunSummary summary;
+  const Rig rig = simulation->rig();
+  const auto result =
+      run_odometry(source, rig, {}, {.sink = [](const FrameEstimate&) -> Expected<void> { return {}; }}, summary);
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_EQ(summary.count(HealthState::good), summary.frames);
+}
+
 TEST(Odometry, RefusesARecordingThatIsTooShortToStart) {
   auto simulation = open_simulation("sim:box_room?duration=3&lidar=ring16");
   Config config;

@@ -66,6 +66,14 @@ PointCloud downsample(const PointCloud& cloud, double spacing_m) {
   return kept;
 }
 
+PointCloud downsample(const PointCloud& cloud, double spacing_m, std::size_t least) {
+  constexpr double kStep = 0.7;
+  PointCloud kept = downsample(cloud, spacing_m);
+  for (int i = 0; i < 4 && kept.points_I.size() < std::min(least, cloud.points_I.size()); ++i)
+    kept = downsample(cloud, spacing_m *= kStep);
+  return kept;
+}
+
 PointCloud thin(PointCloud cloud, std::size_t count) {
   const std::size_t size = cloud.points_I.size();
   if (size <= count) return cloud;

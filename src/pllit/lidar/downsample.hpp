@@ -9,6 +9,7 @@ namespace pllit {
 struct ScanConfig {
   double insert_voxels = 0.5;  ///< spacing of the points that enter the map, in map voxels
   double match_voxels = 1.25;  ///< spacing of the points that are matched, in map voxels
+  int min_matched = 600;       ///< where fewer remain, in narrow rooms, the spacing is reduced
   int max_matched = 2500;      ///< at most so many are matched
 };
 
@@ -17,6 +18,9 @@ struct ScanConfig {
 /// scanner's sense. (One point a voxel would do for less, but where a wall lies near the border of two voxels it
 /// favours the noisy points on the far side and so moves it.)
 PointCloud downsample(const PointCloud& cloud, double spacing_m);
+
+/// The same with a spacing that is reduced, to a quarter at least, until `least` points remain.
+PointCloud downsample(const PointCloud& cloud, double spacing_m, std::size_t least);
 
 /// Keeps at most `count` points, evenly by index.
 PointCloud thin(PointCloud cloud, std::size_t count);

@@ -57,6 +57,37 @@ std::vector<double> squared_errors(const std::vector<RelativePose>& measured, co
   return squared;
 }
 
+/// Graduated non-convexity. Begins where the surrogate is convex and loops that are far off weigh next to nothing; ends
+/// where it is all but truncated least squares itself.
+RobustSolution without_outliers(const PoseGraph& graph, const gtsam::NonlinearFactorGraph& trusted, double limit) {
+  constexpr double kLastMu = 1e3, kGrowth = 2.0;
+  RobustSolution solution{graph.guesses_M, std::vector(graph.loops.size(), 1.0)};
+  std::vector<double> squared = squared_errors(graph.loops, solution.poses_M);
+  const double worst = squared.empty() ? 0.0 : std::ranges::max(squared);
+  if (worst <= 0.5 * limit) return solution;
+  for (double mu = limit / (2.0 * worst - limit); mu < kLastMu; mu *= kGrowth) {
+    for (std::size_t i = 0; i < squared.size(); ++i) solution.loop_weights[i] = truncated_weight(squared[i], limit, mu);
+    solution.poses_M = minimise(graph, trusted, solution.poses_M, solution.loop_weights, 4);
+    squared = squared_errors(graph.loops, solution.poses_M);
+  }
+  for (double& weight : solution.loop_weights) weight = weight > 0.5 ? 1.0 : 0.0;
+  return solution;
+}
+
+/// By what factor, at most 1, the loops' squared errors are smaller than their covariances say, with a margin: where
+/// noise is overstated a wrong loop can hide in it.
+double noise_overstated(const PoseGraph& graph, const RobustSolution& solution) {
+  constexpr std::size_t kFewest = 20;
+  constexpr double kMedianOfChiSquare6 = 5.348, kMargin = 36.0;  // tails are heavy
+  std::vector<double> squared;
+  for (std::size_t i = 0; i < graph.loops.size(); ++i)
+    if (solution.loop_weights[i] > 0.0) squared.push_back(squared_error(graph.loops[i], solution.poses_M));
+  if (squared.size() < kFewest) return 1.0;
+  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
+  std::ranges::nth_element(squared, middle);
+  return std::min(1.0, kMargin * *middle / kMedianOfChiSquare6);
+}
+
 }  // namespace
 
 double squared_error(const RelativePose& measured, const std::vector<SE3>& poses_M) {
@@ -75,20 +106,13 @@ std::vector<SE3> optimised(const PoseGraph& graph) {
 RobustSolution optimised_robustly(const PoseGraph& graph, double max_squared_error) {
   return on_one_thread([&] {
     const auto trusted = trusted_factors(graph);
-    RobustSolution solution{graph.guesses_M, std::vector(graph.loops.size(), 1.0)};
-    std::vector<double> squared = squared_errors(graph.loops, solution.poses_M);
-    const double worst = squared.empty() ? 0.0 : std::ranges::max(squared);
-    if (worst > 0.5 * max_squared_error) {
-      // Begins where the surrogate is convex and loops that are far off weigh next to nothing; ends where it is all but
-      // truncated least squares itself.
-      constexpr double last_mu = 1e3, growth = 2.0;
-      for (double mu = max_squared_error / (2.0 * worst - max_squared_error); mu < last_mu; mu *= growth) {
-        for (std::size_t i = 0; i < squared.size(); ++i)
-          solution.loop_weights[i] = truncated_weight(squared[i], max_squared_error, mu);
-        solution.poses_M = minimise(graph, trusted, solution.poses_M, solution.loop_weights, 4);
-        squared = squared_errors(graph.loops, solution.poses_M);
-      }
-      for (double& weight : solution.loop_weights) weight = weight > 0.5 ? 1.0 : 0.0;
+    double limit = max_squared_error;
+    RobustSolution solution = without_outliers(graph, trusted, limit);
+    for (int round = 0; round < 2; ++round) {
+      const double tighter = max_squared_error * noise_overstated(graph, solution);
+      if (tighter > 0.5 * limit) break;
+      limit = tighter;
+      solution = without_outliers(graph, trusted, limit);
     }
     solution.poses_M = minimise(graph, trusted, solution.poses_M, solution.loop_weights, 50);
     return solution;

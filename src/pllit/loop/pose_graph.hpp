@@ -47,7 +47,7 @@ struct RobustSolution {
 /// The same with loops left out that do not agree with the rest: graduated non-convexity with truncated least squares
 /// (Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for Robust Spatial Perception", RA-L 2020). A loop
 /// whose squared whitened error exceeds `max_squared_error` at the end is wrong; 16.8 is what one right loop in a
-/// hundred exceeds.
+/// hundred exceeds. Where most loops agree far better than their covariances say, the limit is lowered in proportion.
 PLLIT_GRAPH_API RobustSolution optimised_robustly(const PoseGraph& graph, double max_squared_error = 16.8);
 
 /// Squared whitened error of a measurement at given poses.

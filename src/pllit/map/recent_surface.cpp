@@ -18,8 +18,18 @@ Vector3f RecentSurface::mean_W(VoxelKey key, const Cell& cell) const {
   return centre_W + cell.offset_sum_m / cell.points;
 }
 
+bool RecentSurface::counts(VoxelKey key, const Cell& cell) const {
+  return cell.points > 0.0F && way_m_ - cell.way_m < config_.memory_m &&
+         to_seconds(now_ - cell.last) < config_.memory_s &&
+         (mean_W(key, cell).cast<double>() - centre_W_).squaredNorm() < config_.radius_m * config_.radius_m;
+}
+
 void RecentSurface::add(std::span<const Vector3f> points_W, const Vector3d& centre_W, Time time,
                         const NormalAt& normal_at) {
+  if (!cells_.size()) centre_W_ = centre_W;
+  way_m_ += (centre_W - centre_W_).norm();
+  centre_W_ = centre_W;
+  now_ = time;
   constexpr float kLook = 6.0F;  // a surface's plane may not be known yet when its first points come
   for (const Vector3f& p_W : points_W) {
     if ((p_W.cast<double>() - centre_W).squaredNorm() > config_.radius_m * config_.radius_m) continue;
@@ -30,22 +40,20 @@ void RecentSurface::add(std::span<const Vector3f> points_W, const Vector3d& cent
     cell.offset_sum_m += (p_W.cast<double>() - voxel_W).cast<float>();
     cell.points += 1.0F;
     cell.last = time;
+    cell.way_m = way_m_;
     if (cell.points == 1.0F || (cell.points == kLook && cell.normal_W.isZero()))
       cell.normal_W = normal_at(p_W.cast<double>());
   }
-  if (swept_ && to_seconds(time - *swept_) < 1.0) return;
-  swept_ = time;
-  cells_.retain([&](VoxelKey key, const Cell& cell) {
-    return cell.points > 0.0F && to_seconds(time - cell.last) < config_.memory_s &&
-           (mean_W(key, cell).cast<double>() - centre_W).norm() < config_.radius_m;
-  });
+  constexpr std::size_t kSweepIn = 20;  // scans
+  swept_to_ = cells_.retain_some(swept_to_, cells_.slots() / kSweepIn + 1,
+                                 [&](VoxelKey key, const Cell& cell) { return counts(key, cell); });
 }
 
 std::vector<Vector3d> RecentSurface::carve(const Sight& sight, const SightConfig& config) {
   std::vector<VoxelKey> left;
   std::vector<Vector3d> places_W;
   cells_.for_each([&](VoxelKey key, const Cell& cell) {
-    if (cell.points == 0.0F || cell.last == sight.time) return;
+    if (cell.last == sight.time || !counts(key, cell)) return;
     const Vector3d p_W = mean_W(key, cell).cast<double>();
     if (look_around(sight, p_W, config) != PointSight::free) return;
     left.push_back(key);
@@ -58,7 +66,7 @@ std::vector<Vector3d> RecentSurface::carve(const Sight& sight, const SightConfig
 SurfacePoints RecentSurface::points(const ViewCone& view) const {
   SurfacePoints points;
   cells_.for_each([&](VoxelKey key, const Cell& cell) {
-    if (cell.points == 0.0F) return;
+    if (!counts(key, cell)) return;
     const Vector3f p_W = mean_W(key, cell);
     if (!view.contains(p_W.cast<double>())) return;
     points.points_W.push_back(p_W);

@@ -1,9 +1,8 @@
-// The surfaces around the rig that the LiDAR has lately measured. It need not see a thing at the moment that the camera
-// does: a scanner that looks upwards has last seen what stands on a table from farther off.
+// The surfaces around the rig that the LiDAR has lately measured from nearly here: what it saw from elsewhere the
+// camera may not see, and what hides it may not have been measured yet.
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,8 +15,9 @@ namespace pllit {
 
 struct RecentSurfaceConfig {
   double voxel_m = 0.05;   ///< one point is kept in each
-  double radius_m = 20.0;  ///< around the rig
-  double memory_s = 20.0;  ///< what was not measured for so long is forgotten
+  double radius_m = 12.0;  ///< around the rig
+  double memory_m = 0.5;   ///< what was not measured on the last so many metres of way is forgotten
+  double memory_s = 20.0;  ///< nor for so long
 };
 
 /// Holds everything that an image may show, and somewhat more.
@@ -53,12 +53,18 @@ class RecentSurface {
     float points = 0.0F;                       ///< 0: seen through, waits to be swept out
     Vector3f normal_W = Vector3f::Zero();
     Time last{};
+    double way_m = 0.0;  ///< of the rig, when last measured
   };
   Vector3f mean_W(VoxelKey key, const Cell& cell) const;
+  /// Neither seen through, nor old, nor far.
+  bool counts(VoxelKey key, const Cell& cell) const;
 
   RecentSurfaceConfig config_;
   VoxelTable<Cell> cells_;
-  std::optional<Time> swept_;
+  std::size_t swept_to_ = 0;  ///< slot of the table
+  Vector3d centre_W_ = Vector3d::Zero();
+  double way_m_ = 0.0;
+  Time now_{};
 };
 
 }  // namespace pllit

@@ -51,6 +51,8 @@ class ThermalMap {
   PointTable table() const;
   static std::vector<std::string> fields();
 
+  /// Of the first image; field `seen_s` counts from here.
+  const std::optional<Time>& start() const { return start_; }
   std::size_t size() const { return voxels_.size(); }
   std::size_t bytes() const { return voxels_.bytes(); }
   const ThermalMapConfig& config() const { return config_; }

@@ -9,6 +9,9 @@ namespace {
 constexpr float kViewSpacing_m = 0.25F;
 constexpr std::uint8_t kCalmImages = 3;
 
+/// From now on `squares` is a mean.
+void settle(ThermalVoxel& voxel) { voxel.squares /= static_cast<float>(std::max(1u, voxel.images - 1)); }
+
 /// Welford's recursion until learned, then exponential.
 void learn(ThermalVoxel& voxel, float intensity, float weight_share, const VoxelModelConfig& config) {
   const float d = intensity - voxel.mean;
@@ -16,7 +19,7 @@ void learn(ThermalVoxel& voxel, float intensity, float weight_share, const Voxel
     ++voxel.images;
     voxel.mean += d / static_cast<float>(voxel.images);
     voxel.squares += d * (intensity - voxel.mean);
-    if (voxel.learned(config)) voxel.squares /= static_cast<float>(std::max(1u, voxel.images - 1));
+    if (voxel.learned(config)) settle(voxel);
     return;
   }
   ++voxel.images;
@@ -68,10 +71,12 @@ float ThermalVoxel::sigma(const VoxelModelConfig& config) const {
 
 ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelModelConfig& config) {
   if (voxel.points == 0.0F) voxel.first_seen = sample.time;
+  const bool was_learned = voxel.learned(config);
   if (voxel.views == 0 || (sample.viewpoint_W - voxel.last_viewpoint_W).norm() > kViewSpacing_m) {
     voxel.last_viewpoint_W = sample.viewpoint_W;
     voxel.views = static_cast<std::uint16_t>(std::min<int>(voxel.views + 1, 60000));
   }
+  if (!was_learned && voxel.learned(config)) settle(voxel);
   voxel.last_seen = sample.time;
   voxel.offset_sum_m += static_cast<float>(sample.points) * sample.offset_m;
   voxel.points += static_cast<float>(sample.points);

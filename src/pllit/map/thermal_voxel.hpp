@@ -11,6 +11,7 @@ namespace pllit {
 struct VoxelModelConfig {
   double noise = 6.0;           ///< least standard deviation: sensor, calibration, rounding; in the map's unit
   int learned_after = 12;       ///< images before a voxel's normal intensity is known
+  int learned_views = 2;        ///< from so many viewpoints, or in five times as many images where the rig stands
   double adaptation = 0.02;     ///< weight of each later image: the normal intensity fades in 50 images
   double gate_sigmas = 3.0;     ///< beyond this an image does not count as normal
   double min_change = 30.0;     ///< nor does it beyond this, and a smaller change is never hot; in the map's unit
@@ -46,7 +47,8 @@ struct ThermalVoxel {
   bool hot = false;
 
   bool learned(const VoxelModelConfig& config) const {
-    return images >= static_cast<std::uint32_t>(config.learned_after);
+    const auto enough = static_cast<std::uint32_t>(config.learned_after);
+    return images >= (views >= config.learned_views ? enough : 5 * enough);
   }
   /// Standard deviation of what is normal, at least the configured noise.
   float sigma(const VoxelModelConfig& config) const;

@@ -24,9 +24,9 @@ void for_older_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey ke
 
 /// Whether something next to it has always been nearly as hot: calibration is good to a few pixels only.
 bool explained_by_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey key, float hot, float change,
-                             Time before) {
+                             Time before, const WatchConfig& config) {
   bool explained = false;
-  for_older_neighbours(map, watch, key, 1, before, [&](const ThermalVoxel& voxel) {
+  for_older_neighbours(map, watch, key, config.seam_voxels, before, [&](const ThermalVoxel& voxel) {
     if (voxel.mean > hot - 0.5F * change) explained = true;
   });
   return explained;
@@ -82,9 +82,10 @@ void note_heat(WatchedVoxel& watched, float value, Time time) {
 }
 
 /// A voxel with a past that its own model calls hot.
-void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input) {
+void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
+                   const WatchConfig& config) {
   const float change = voxel.changed_mean - voxel.mean;
-  if (explained_by_neighbours(input.map, watch, key, voxel.changed_mean, change, voxel.change_since)) return;
+  if (explained_by_neighbours(input.map, watch, key, voxel.changed_mean, change, voxel.change_since, config)) return;
   WatchedVoxel watched{.since = voxel.change_since,
                        .hits = voxel.changes - 1,
                        .normal = voxel.mean,
@@ -123,7 +124,7 @@ void take_in_new(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const Wa
   } else if (at(1) || at(2)) {
     const auto normal = normal_of_new(input, watch, key, voxel, before, config);
     if (!normal || !hot_against(voxel.mean, *normal, model)) return;
-    if (explained_by_neighbours(input.map, watch, key, voxel.mean, voxel.mean - normal->value, before)) return;
+    if (explained_by_neighbours(input.map, watch, key, voxel.mean, voxel.mean - normal->value, before, config)) return;
     watched.normal = normal->value;
     watched.sigma = normal->sigma;
   } else {
@@ -170,7 +171,7 @@ Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
     if (const auto found = watch.find(key); found != watch.end()) {
       if (!found->second.vacated) follow(found->second, key, voxel, input.map);
     } else if (voxel.hot) {
-      take_in_known(watch, key, voxel, input);
+      take_in_known(watch, key, voxel, input, config);
     } else if (!voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits) &&
                voxel.mean - level > static_cast<float>(model.min_change)) {
       take_in_new(watch, key, voxel, input, config);

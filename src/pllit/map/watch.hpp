@@ -10,6 +10,7 @@ namespace pllit {
 
 struct WatchConfig {
   double forget_s = 5.0;         ///< voxels that belong to no anomaly are forgotten when not seen hot for so long
+  int seam_voxels = 2;           ///< so near, heat that has always been explains a change: images lie a few pixels off
   int surround_voxels = 8;       ///< how far around a new surface its surroundings are looked at
   double evidence_lead_s = 0.5;  ///< sights so shortly before a surface was first seen do not speak of it
 };

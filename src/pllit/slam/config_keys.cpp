@@ -55,6 +55,8 @@ void list(Section section, PlaneMapConfig& config) {
   section.add(PLLIT_KEY(voxel_m),
               "Voxel of the LiDAR map (planes span two of them): 0.4 serves most places, 0.2 narrow rooms.", "m",
               {0.05, 10.0});
+  section.add(PLLIT_KEY(radius_m), "How far around the rig the map for matching reaches; older parts are forgotten.",
+              "m", {5.0, 2000.0});
 }
 
 void list_noise(Section section, RigConfig& rig) {
@@ -73,8 +75,6 @@ void list_noise(Section section, RigConfig& rig) {
 }
 
 void list_details(Section section, PlaneMapConfig& config) {
-  section.add(PLLIT_KEY(radius_m), "How far around the rig the map for matching reaches; older parts are forgotten.",
-              "m", {5.0, 2000.0});
   section.add(PLLIT_KEY(memory_mb), "Most memory that the map for matching may take; beyond it the radius shrinks.",
               "MB", {16.0, 1048576.0});
   section.add(PLLIT_KEY(coarse_factor),
@@ -99,6 +99,7 @@ void list(Section section, PlaneResidualConfig& config) {
 void list(Section section, ScanConfig& config) {
   section.add(PLLIT_KEY(insert_voxels), "Spacing of the points that enter the map, in map voxels.", "", {0.05, 10.0});
   section.add(PLLIT_KEY(match_voxels), "Spacing of the points that are matched, in map voxels.", "", {0.05, 10.0});
+  section.add(PLLIT_KEY(min_matched), "Where fewer remain, in narrow rooms, the spacing is reduced.", "", {0.0, 1e6});
   section.add(PLLIT_KEY(max_matched), "At most so many points of a scan are matched.", "", {100.0, 1e6});
 }
 
@@ -185,10 +186,7 @@ KeyList keys_of(Config& config) {
   list(rig.section("camera", "Thermal or visible camera, frame C (z forward, x right, y down)."), config.rig.camera);
   root.section("start", "How the first pose is found.")
       .choose("mode", config.start.mode, kStartModes, "State of motion at the start; auto: looked up in the IMU data.");
-  Section map = root.section("map", "The map that scans are matched with, and the one that is written.");
-  list(map, config.map);
-  map.add("file_voxel_m", config.map_file_voxel_m, "The written map holds one point in each voxel of this size.", "m",
-          {0.001, 10.0});
+  list(root.section("map", "The map that scans are matched with."), config.map);
   list_thermal(root.section("thermal", "What images do, thermal or visible."), config.vision);
   list_features(root.section("features", "What is looked for in images."), config.vision);
   root.section("loop", "Loop closing: earlier places that are met again straighten the trajectory and the map.")
@@ -198,7 +196,10 @@ KeyList keys_of(Config& config) {
   Section advanced = root.section("advanced", "For experts: the defaults serve nearly everyone.");
   list_noise(advanced.section("noise", "Sensor noise beyond the data sheet."), config.rig);
   list_details(advanced.section("start", "Details of the start-up."), config.start);
-  list_details(advanced.section("map", "The map that scans are matched with."), config.map);
+  Section map = advanced.section("map", "The map that scans are matched with, and the one that is written.");
+  list_details(map, config.map);
+  map.add("file_voxel_m", config.map_file_voxel_m, "The written map holds one point in each voxel of this size.", "m",
+          {0.001, 10.0});
   list(advanced.section("scan", "How scans are thinned out."), config.scan);
   list(advanced.section("planes", "Residuals of points to planes."), config.planes);
   list(advanced.section("degeneracy", "When a direction is left to the IMU."), config.degeneracy);

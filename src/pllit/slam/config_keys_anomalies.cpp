@@ -19,6 +19,9 @@ void list_anomalies(Section section, ThermographyConfig& config) {
               {0.5, 100.0});
   section.add("min_incidence_cos", config.sampling.min_cos_incidence,
               "Surfaces seen at a more grazing angle, by its cosine, are not watched.", "", {0.0, 1.0});
+  section.add("seen_within_m", config.surface.memory_m,
+              "Surfaces that the LiDAR has not measured on so much of the way are not looked for in images.", "m",
+              {0.05, 100.0});
   section.add("voxel_m", config.map.voxel_m, "Voxel of the thermographic map.", "m", {0.01, 1.0});
   section.add("memory_mb", config.map.memory_mb,
               "Most memory it may take; beyond it what was not seen for longest goes.", "MB", {4.0, 1048576.0});
@@ -26,6 +29,8 @@ void list_anomalies(Section section, ThermographyConfig& config) {
   section.add("noise", model.noise, "Least standard deviation of a voxel, in the unit of the images.", "", {1e-3, 1e4});
   section.add("learned_after", model.learned_after, "Images before a voxel's normal intensity is known.", "",
               {2.0, 1000.0});
+  section.add("learned_views", model.learned_views, "And from so many viewpoints, unless the rig stands.", "",
+              {1.0, 100.0});
   section.add("gate_sigmas", model.gate_sigmas, "A greater change is not normal, in standard deviations.", "",
               {1.0, 20.0});
   section.add("min_change", model.min_change, "A smaller change is never hot, in the unit of the images.", "",
@@ -37,6 +42,8 @@ void list_anomalies(Section section, ThermographyConfig& config) {
   section.add("anchor_loss", config.anchor.loss,
               "Surfaces whose intensity differs by more do not tie images to the map, in the unit of the images.", "",
               {1e-3, 1e4});
+  section.add("seam_voxels", config.anomalies.watch.seam_voxels,
+              "So near, heat that has always been there explains a change.", "", {0.0, 10.0});
   section.add("min_voxels", config.anomalies.min_voxels, "Smaller clusters of hot voxels are noise.", "",
               {1.0, 10000.0});
   section.add("dwell_s", config.anomalies.dwell_s, "How long they must have been hot before the alarm.", "s",

@@ -95,20 +95,21 @@ std::vector<FrameCell> loop_row(const LoopRecord& record) {
           record.accepted || !record.reason.empty() ? record.reason : "no other loop agrees"};
 }
 
-void move_points(PointTable& map, const Correction& correction, const Trajectory& odometry) {
-  const auto times = std::ranges::find(map.fields, "time", &ScalarField::name);
-  if (odometry.empty() || times == map.fields.end()) return;
+void move_points(PointTable& points, std::string_view field, Time start, const Correction& correction,
+                 const Trajectory& odometry) {
+  const auto times = std::ranges::find(points.fields, field, &ScalarField::name);
+  if (odometry.empty() || times == points.fields.end()) return;
   std::size_t frame = odometry.size();  // none yet
   SE3 T_M_O;
-  for (std::size_t i = 0; i < map.points.size(); ++i) {
-    const Time time = odometry.front().time + from_seconds(times->values[i]);
+  for (std::size_t i = 0; i < points.points.size(); ++i) {
+    const Time time = start + from_seconds(times->values[i]);
     const auto after = std::ranges::lower_bound(odometry, time - std::chrono::milliseconds(5), {}, &StampedPose::time);
     const auto own = static_cast<std::size_t>(std::min(after, odometry.end() - 1) - odometry.begin());
     if (own != frame) {
       frame = own;
       T_M_O = correction.T_M_O(odometry[own].time, odometry[own].T_W_I);
     }
-    map.points[i] = T_M_O.act(map.points[i].cast<double>()).cast<float>();
+    points.points[i] = T_M_O.act(points.points[i].cast<double>()).cast<float>();
   }
 }
 

@@ -25,8 +25,9 @@ std::vector<std::string> loop_columns();
 /// What spoke for and against a candidate for a loop, and what became of it.
 std::vector<FrameCell> loop_row(const LoopRecord& record);
 
-/// Moves points of the map where their frames went; field `time` tells which frame gave a point (MapRecorder).
-void move_points(PointTable& map, const Correction& correction, const Trajectory& odometry);
+/// Moves points where their frames went. `field` of the table tells when each was seen, in seconds since `start`.
+void move_points(PointTable& points, std::string_view field, Time start, const Correction& correction,
+                 const Trajectory& odometry);
 
 /// Turns frames into the map that is written: each voxel of the world gives its first point, in W.
 class MapRecorder {

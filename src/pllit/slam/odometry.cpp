@@ -90,10 +90,13 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     facts.has_scan = true;
     frame.cloud = deskew(*packet.scan, motion.path, rig_.T_I_L, rig_.lidar);
     dense = downsample(frame.cloud, config_.scan.insert_voxels * config_.map.voxel_m);
-    const PointCloud sparse = thin(downsample(dense, config_.scan.match_voxels * config_.map.voxel_m),
+    const PointCloud sparse = thin(downsample(dense, config_.scan.match_voxels * config_.map.voxel_m,
+                                              static_cast<std::size_t>(config_.scan.min_matched)),
                                    static_cast<std::size_t>(config_.scan.max_matched));
     clock.charge(Stage::deskew);
 
+    // A map of less than half a scan, such as the first image cuts off, is no map yet.
+    facts.map_empty = map_.voxels() == 0 || 2 * mapped_points_ < dense.points_I.size();
     const UpdateResult lidar = match(motion.sweep.estimate, sparse, facts);
     advance_to(at_end(motion, lidar));
     T_W_scan = lidar.posterior.mean.T_W_I();
@@ -112,7 +115,7 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     if (facts.image.used && image_holds(facts.image.information, unobserved_, estimate_.mean.R_W_I))
       last_held_ = packet.end;
     frame.image = packet.image;
-    frame.greys = vision_->curve();
+    frame.T_I_C = vision_->T_I_C();
   }
   facts.image.holds = to_seconds(packet.end - last_held_) < config_.health.silent_degraded_s;
   if (packet.scan) {
@@ -137,7 +140,6 @@ void Odometry::advance_to(const SmoothedEnd& end) {
 
 UpdateResult Odometry::match(const Estimate& predicted, const PointCloud& points, FrameFacts& facts) {
   facts.points = static_cast<int>(points.points_I.size());
-  facts.map_empty = map_.voxels() == 0;
   UpdateResult result{.posterior = predicted, .last = {}};
   if (facts.map_empty) return result;
 
@@ -167,6 +169,7 @@ void Odometry::extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts
     facts.map_restarted = true;
     unmatched_ = 0;
     map_.clear();
+    mapped_points_ = 0;
     unobserved_ = {};
     if (vision_) vision_->restart();
     drift_.restart(estimate_);
@@ -181,6 +184,7 @@ void Odometry::extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts
     drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points,
                     facts.image.holds ? unobserved_shifts(unobserved_) : Eigen::Matrix3Xd(3, 0));
   map_.insert(points, T_W_I);
+  mapped_points_ += points.points_I.size();
   map_.slide(estimate_.mean.p_W);
 }
 

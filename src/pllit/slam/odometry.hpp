@@ -21,9 +21,9 @@ struct FrameEstimate {
   Matrix6 drift_covariance;  ///< of that map against the origin, (theta, p) in W
   Health health;
   FrameFacts facts;
-  PointCloud cloud;  ///< the scan's points in I, de-skewed; empty without a scan
-  std::optional<CameraFrame> image = std::nullopt;  ///< of this moment, where images are looked at
-  GreyCurve greys{};                                ///< its photometric calibration
+  PointCloud cloud;                                 ///< the scan's points in I, de-skewed; empty without a scan
+  std::optional<CameraFrame> image = std::nullopt;  ///< of this moment, where images are looked at ...
+  SE3 T_I_C = SE3::Identity();                      ///< ... and the camera's pose on the rig, as refined so far
   StageTimes stage_ms{};
 
   /// Covariance of (theta, p) in W against the origin.
@@ -36,8 +36,7 @@ class Odometry {
   Odometry(const Rig& rig, const Config& config, std::unique_ptr<Vision> vision = nullptr);
 
   /// Takes the next packet. Returns the frames that are now known: none while starting up, all of them once started,
-  /// then one a packet. Errors: no start is possible, an image
-  /// is not what the configuration says.
+  /// then one a packet. Errors: no start is possible, an image is not what the configuration says.
   Expected<std::vector<FrameEstimate>> process(SensorPacket packet);
 
   /// How it started, once it has.
@@ -67,6 +66,7 @@ class Odometry {
   DegenerateDirections unobserved_;  ///< of the last scan
   Time last_match_, last_held_;      ///< by a scan; by an image, where the scan does not hold the pose
   int unmatched_ = 0;                ///< scans in a row
+  std::size_t mapped_points_ = 0;    ///< since the map was begun
 };
 
 /// Covariance of the pose of `b` seen from `a` (theta, p in W, about a's position): what the map walked between them

@@ -49,9 +49,8 @@ std::optional<ThermographyInput> thermography_input(const FrameEstimate& frame, 
     return std::nullopt;
   const SE3 T_W_I = frame.posterior.mean.T_W_I();
   ThermographyInput input{.time = frame.posterior.mean.time,
-                          .T_W_C = T_W_I * rig.T_I_C,
+                          .T_W_C = T_W_I * frame.T_I_C,
                           .raw = counts,
-                          .greys = frame.greys,
                           .planes = &planes,
                           .trusted = frame.health.state == HealthState::good};
   for (const Vector3f& p_I : frame.cloud.points_I)
@@ -77,7 +76,7 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
 
   const auto unit = [&](double raw) {
     if (config_.unit == IntensityUnit::kelvin) return config_.kelvin_at_zero + config_.kelvin_per_count * raw;
-    return config_.unit == IntensityUnit::grey ? input.greys(raw) : raw;
+    return raw;
   };
   const SurfacePoints points = surface_.points(view_cone(input.T_W_C, camera_));
   ThermalView view{.time = input.time, .viewpoint_W = input.T_W_C.translation()};
@@ -93,6 +92,7 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
   if (frame.use == Use::mapped && !sight_.range_mm.empty()) {
     detector_.update({.map = map_, .seen = seen, .sight = sight_, .past = sights_}, view);
     sights_.add(sight_);
+    keep_crops(input);
   }
   for (const Anomaly& anomaly : detector_.anomalies())
     if (anomaly.confirmed == input.time) frame.confirmed.push_back(anomaly.id);
@@ -125,6 +125,15 @@ void Thermography::remember_scan(const ThermographyInput& input) {
   sight_ = sight_of(input.time, input.T_W_C.translation(), fresh_W, config_.sights);
   if (++scan_count_ % config_.scans != 0) return;
   for (const Vector3d& p_W : surface_.carve(sight_, config_.sights)) map_.forget(p_W);
+}
+
+void Thermography::keep_crops(const ThermographyInput& input) {
+  for (const Anomaly& anomaly : detector_.anomalies()) {
+    if (!anomaly.crop || anomaly.crop->time != input.time) continue;
+    const ImageCrop& crop = *anomaly.crop;
+    const cv::Rect part = cv::Rect(crop.left, crop.top, crop.width, crop.height) & cv::Rect({}, input.raw.size());
+    if (!part.empty()) crops_[anomaly.id] = input.raw(part).clone();
+  }
 }
 
 /// Finds the curve from this image's intensities to the map's; false where the image must not be used.

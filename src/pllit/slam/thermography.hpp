@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -15,8 +16,7 @@ namespace pllit {
 struct ThermographyInput {
   Time time;
   SE3 T_W_C = SE3::Identity();       ///< at that time
-  cv::Mat raw{};                     ///< CV_8UC1 or CV_16UC1, of the camera's size
-  GreyCurve greys{};                 ///< of the photometric stage; the identity without one
+  cv::Mat raw{};                     ///< CV_8UC1 or CV_16UC1, of the camera's size; the anchor calibrates it
   std::vector<Vector3f> points_W{};  ///< the scan that ends with it, or empty
   const PlaneMap* planes = nullptr;  ///< for the surfaces' normals; none: not known
   bool trusted = true;               ///< localisation is good
@@ -53,12 +53,15 @@ class Thermography {
   /// The hot points of all anomalies that are or were alarms, with fields `id`, `change` and `change_sigmas`: what the
   /// paper marks red.
   PointTable anomaly_points() const;
+  /// Of each anomaly the part of an image in which it is largest (Anomaly::crop), as the camera gave it.
+  const std::map<std::uint32_t, cv::Mat>& crops() const { return crops_; }
   std::size_t watched() const { return detector_.watch().size(); }
   const ThermographyConfig& config() const { return config_; }
 
  private:
   bool shutter_closed(const ThermographyInput& input);
   void remember_scan(const ThermographyInput& input);
+  void keep_crops(const ThermographyInput& input);
   bool tie_to_map(const std::vector<SurfaceObservation>& observations, ThermographyFrame& frame);
 
   Camera camera_;
@@ -72,6 +75,7 @@ class Thermography {
   Sight sight_;  ///< of these
   int scan_count_ = 0;
   cv::Mat last_raw_;
+  std::map<std::uint32_t, cv::Mat> crops_;
   std::optional<Time> shutter_;  ///< last image that was frozen
 };
 

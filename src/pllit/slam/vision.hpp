@@ -41,8 +41,6 @@ class Vision {
 
   /// As refined so far.
   const SE3& T_I_C() const { return clones_.poses.front(); }
-  /// Raw to calibrated greys of the last image.
-  const GreyCurve& curve() const { return chain_.curve; }
 
  private:
   /// What is found in an image without knowing where it was taken.

@@ -1,0 +1,125 @@
+#include "session_heat.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+#include "pllit/io/anomalies_file.hpp"
+#include "pllit/io/ply.hpp"
+#include "pllit/report/report.hpp"
+#include "pllit/slam/frame_table.hpp"
+
+namespace pllit::app {
+namespace {
+
+Expected<void> write_anomalies(SessionWriter& session, const std::vector<Anomaly>& anomalies, IntensityUnit unit) {
+  return session.write_text("anomalies.json", anomalies_json(anomalies, unit).dump(2) + "\n");
+}
+
+void log_alarm(const Anomaly& anomaly) {
+  const Vector3d& p_W = anomaly.position_W;
+  spdlog::warn("alarm {}: {} at ({:.2f}, {:.2f}, {:.2f}) m, {:.1f} sigma above normal", anomaly.id,
+               name_of(anomaly.kind), p_W.x(), p_W.y(), p_W.z(), anomaly.mean_sigmas);
+}
+
+/// What loops moved, moved.
+struct Moved {
+  std::vector<Anomaly> anomalies;
+  PointTable map, points;
+};
+
+Expected<Moved> moved_heat(const SessionWriter& session, const Thermography& thermography, const LoopResult& loops) {
+  Moved moved{thermography.anomalies(), thermography.map().table(), thermography.anomaly_points()};
+  if (loops.accepted == 0 || !loops.stopped.empty()) return moved;
+  const auto odometry = read_interrupted_tum(session.folder() / "odometry.tum");
+  if (!odometry) return std::unexpected(odometry.error());
+  const Time start = thermography.map().start().value_or(Time{});
+  move_points(moved.map, "seen_s", start, loops.correction, *odometry);
+  move_points(moved.points, "seen_s", start, loops.correction, *odometry);
+  for (Anomaly& anomaly : moved.anomalies)
+    if (const auto T_O_I = pose_at(*odometry, anomaly.last_seen, std::chrono::seconds(1)))
+      anomaly.position_W = loops.correction.T_M_O(anomaly.last_seen, *T_O_I).act(anomaly.position_W);
+  return moved;
+}
+
+double number(const std::string& text) {
+  double value = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+/// Frames in a row that were not good for the same reasons. Numbers in reasons differ from frame to frame; the first
+/// frame's stand.
+std::vector<DoubtfulStretch> doubts_of(const CsvTable& health) {
+  const auto column = [&](const char* name) {
+    return static_cast<std::size_t>(std::ranges::find(health.columns, name) - health.columns.begin());
+  };
+  const std::size_t time = column("time_s"), state = column("state"), reasons = column("reasons");
+  std::vector<DoubtfulStretch> doubts;
+  bool open = false;
+  for (const auto& row : health.rows) {
+    if (std::max({time, state, reasons}) >= row.size()) continue;
+    if (open) doubts.back().to_s = number(row[time]);
+    open = open && doubts.back().state == row[state];
+    if (!open && row[state] != "good") {
+      doubts.push_back({number(row[time]), number(row[time]), row[state], row[reasons]});
+      open = true;
+    }
+  }
+  return doubts;
+}
+
+}  // namespace
+
+Expected<void> AlarmTeller::tell(SessionWriter& session, const Thermography& thermography, Time time) {
+  bool changed = false;
+  const std::vector<Anomaly> anomalies = thermography.anomalies();
+  for (const Anomaly& anomaly : anomalies) {
+    const auto [told, fresh] = told_.try_emplace(anomaly.id, anomaly.state);
+    if (!fresh && told->second == anomaly.state) continue;
+    told->second = anomaly.state;
+    changed = changed || anomaly.confirmed.has_value();
+    if (anomaly.confirmed == time) log_alarm(anomaly);
+    if (!events_) continue;
+    nlohmann::ordered_json event{{"event", "anomaly"}, {"time_s", to_seconds(time)}};
+    event["anomaly"] = anomaly_json(anomaly);
+    std::puts(event.dump().c_str());
+    std::fflush(stdout);
+  }
+  return changed ? write_anomalies(session, anomalies, thermography.config().unit) : Expected<void>{};
+}
+
+Expected<void> write_heat(SessionWriter& session, const Thermography& thermography, const LoopResult& loops) {
+  const auto moved = moved_heat(session, thermography, loops);
+  if (!moved) return std::unexpected(moved.error());
+  if (auto done = write_anomalies(session, moved->anomalies, thermography.config().unit); !done) return done;
+  if (auto done = session.write_cloud("thermal_map.ply", moved->map); !done) return done;
+  return session.write_cloud("anomalies.ply", moved->points);
+}
+
+Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run,
+                            const Thermography* thermography) {
+  auto whole = open_session(session.folder());
+  if (!whole) return std::unexpected(whole.error());
+  ReportContent content{.title = "Inspection " + whole->folder.filename().string(),
+                        .trajectory = std::move(whole->trajectory),
+                        .map = std::move(whole->map),
+                        .doubts = doubts_of(whole->health)};
+  if (thermography) {
+    content.has_images = thermography->map().size() > 0;
+    content.unit = thermography->config().unit;
+    content.voxel_m = thermography->config().map.voxel_m;
+    auto map = read_ply(whole->folder / "thermal_map.ply");
+    if (!map) return std::unexpected(map.error());
+    content.thermal_map = std::move(*map);
+    auto anomalies = read_anomalies(whole->folder / "anomalies.json");
+    if (!anomalies) return std::unexpected(anomalies.error());
+    content.anomalies = std::move(*anomalies);
+    content.crops = thermography->crops();
+  }
+  return session.write_text("report.html", report_html(content, run));
+}
+
+}  // namespace pllit::app

@@ -1,0 +1,33 @@
+// What the thermographic stage tells while a session runs, and what it leaves behind.
+#pragma once
+
+#include <map>
+
+#include "pllit/io/session.hpp"
+#include "pllit/slam/loop_stage.hpp"
+#include "pllit/slam/thermography.hpp"
+
+namespace pllit::app {
+
+/// Tells what becomes of anomalies as it happens.
+class AlarmTeller {
+ public:
+  /// With `events` each change of an anomaly's state is a line of JSON on stdout.
+  explicit AlarmTeller(bool events) : events_(events) {}
+
+  /// To be called after each image. Alarms are logged, and anomalies.json is written anew, so that a kill loses none.
+  Expected<void> tell(SessionWriter& session, const Thermography& thermography, Time time);
+
+ private:
+  bool events_;
+  std::map<std::uint32_t, AnomalyState> told_;
+};
+
+/// Writes anomalies.json, thermal_map.ply and anomalies.ply, where loop closing moved them.
+Expected<void> write_heat(SessionWriter& session, const Thermography& thermography, const LoopResult& loops);
+
+/// Writes report.html from what the session holds and `run`, its run.json.
+Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run,
+                            const Thermography* thermography);
+
+}  // namespace pllit::app

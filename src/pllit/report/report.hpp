@@ -1,0 +1,40 @@
+// A session as one page that is read on a phone and printed: what was found, where, how sure, and what was not seen.
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "pllit/report/severity.hpp"
+#include "pllit/state/table.hpp"
+#include "pllit/state/trajectory.hpp"
+
+namespace pllit {
+
+/// A stretch of frames that were not good, for the same reasons.
+struct DoubtfulStretch {
+  double from_s = 0.0, to_s = 0.0;  ///< since 1970
+  std::string state, reasons;
+};
+
+/// All that the page shows, as plain values. Positions in W.
+struct ReportContent {
+  std::string title;
+  IntensityUnit unit = IntensityUnit::grey;
+  double voxel_m = 0.05;  ///< of the thermographic map
+  bool has_images = false;
+  Trajectory trajectory{};
+  PointTable map{};          ///< of the LiDAR
+  PointTable thermal_map{};  ///< empty without images
+  std::vector<Anomaly> anomalies{};
+  std::map<std::uint32_t, cv::Mat> crops{};  ///< by the anomaly's number, as the camera gave them
+  std::vector<DoubtfulStretch> doubts{};
+  SeverityTable severity = neta_100_18();
+};
+
+/// One self-contained page of HTML. `run` is the session's run.json.
+std::string report_html(const ReportContent& content, const nlohmann::ordered_json& run);
+
+}  // namespace pllit
