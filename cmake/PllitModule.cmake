@@ -22,9 +22,10 @@ function(pllit_module name)
   endif()
 endfunction()
 
-# pllit_test(NAME SOURCES ... LINK ... [LABELS slow])   one GoogleTest executable, each test its own CTest entry
+# pllit_test(NAME [WHOLE] SOURCES ... LINK ... [LABELS slow])   one GoogleTest executable, each test its own CTest entry
+#   WHOLE: all of them one entry, where tests share what takes long to make
 function(pllit_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "WHOLE" "" "SOURCES;LINK;LABELS" ${ARGN})
   if("slow" IN_LIST arg_LABELS AND NOT PLLIT_SLOW_TESTS)
     return()
   endif()
@@ -32,5 +33,10 @@ function(pllit_test name)
   target_link_libraries(${name} PRIVATE ${arg_LINK} pllit_flags Eigen3::Eigen GTest::gtest GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
   target_precompile_headers(${name} REUSE_FROM pllit_test_pch)
+  if(arg_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 400 LABELS "${arg_LABELS}")
+    return()
+  endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 400 LABELS "${arg_LABELS}")
 endfunction()

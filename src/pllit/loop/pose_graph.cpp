@@ -60,7 +60,7 @@ std::vector<double> squared_errors(const std::vector<RelativePose>& measured, co
 /// Graduated non-convexity. Begins where the surrogate is convex and loops that are far off weigh next to nothing; ends
 /// where it is all but truncated least squares itself.
 RobustSolution without_outliers(const PoseGraph& graph, const gtsam::NonlinearFactorGraph& trusted, double limit) {
-  constexpr double kLastMu = 1e3, kGrowth = 2.0;
+  constexpr double kLastMu = 1e3, kGrowth = 4.0;
   RobustSolution solution{graph.guesses_M, std::vector(graph.loops.size(), 1.0)};
   std::vector<double> squared = squared_errors(graph.loops, solution.poses_M);
   const double worst = squared.empty() ? 0.0 : std::ranges::max(squared);
