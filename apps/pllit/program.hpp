@@ -28,6 +28,7 @@ struct Verb {
 };
 
 // One function a verb, each in verb_NAME.cpp: adds the subcommand with its options to the program.
+Verb add_compare(CLI::App& program);
 Verb add_config(CLI::App& program);
 Verb add_doctor(CLI::App& program);
 Verb add_eval(CLI::App& program);

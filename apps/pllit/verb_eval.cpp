@@ -64,7 +64,6 @@ ExitCode run_findings(const Options& options) {
 
 ExitCode run(const Options& options) {
   if (!options.scene.empty()) return run_findings(options);
-  if (options.estimate.empty()) return report(input_error("eval needs TRUTH.tum and ESTIMATE.tum").error());
   const auto scores = scores_of(options);
   if (!scores) return report(scores.error());
   std::fputs((options.json ? json_of(*scores) : text_of(*scores)).c_str(), stdout);
@@ -80,6 +79,9 @@ Verb add_eval(CLI::App& program) {
       ->type_name("TRUTH.tum|SESSION")
       ->required();
   verb->add_option("estimate", options->estimate, "Estimated trajectory")->type_name("ESTIMATE.tum");
+  verb->parse_complete_callback([options] {
+    if (options->estimate.empty() && options->scene.empty()) throw CLI::RequiredError("estimate");
+  });
   verb->add_option("--findings", options->scene, "Score a session's anomalies against what the simulator put there")
       ->type_name("F.scene.json");
   const std::map<std::string, Alignment> alignments{

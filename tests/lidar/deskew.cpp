@@ -105,12 +105,15 @@ std::vector<T> read_binary(const std::filesystem::path& path) {
   return values;
 }
 
-/// Pose that takes raw points to deskewed ones, from those
-/// measured within 60 microseconds of `time`: one or two columns.
+/// Pose that takes raw points to deskewed ones, from those measured within 60 microseconds of `time`, which are one or
+/// two columns, or in a wider span where there are gaps.
 SE3 pose_from_points(const LidarScan& scan, const std::vector<Vector3d>& expected, const SE3& T_I_L, Duration time) {
   std::vector<std::size_t> near;
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    if (std::abs((scan.offsets[i] - time).count()) < 60'000) near.push_back(i);
+  for (std::int64_t span_ns = 60'000; near.size() < 10; span_ns *= 2) {
+    near.clear();
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      if (std::abs((scan.offsets[i] - time).count()) < span_ns) near.push_back(i);
+  }
   Eigen::Matrix3Xd from(3, near.size()), to(3, near.size());
   for (std::size_t k = 0; k < near.size(); ++k) {
     from.col(static_cast<Eigen::Index>(k)) = T_I_L.act(scan.points_L[near[k]].cast<double>());

@@ -16,7 +16,7 @@ namespace pllit {
 struct RecentSurfaceConfig {
   double voxel_m = 0.05;   ///< one point is kept in each
   double radius_m = 12.0;  ///< around the rig
-  double memory_m = 0.5;   ///< what was not measured on the last so many metres of way is forgotten
+  double memory_m = 2.0;   ///< what was not measured on the last so many metres of way is forgotten
   double memory_s = 20.0;  ///< nor for so long
 };
 

@@ -1,0 +1,132 @@
+// pllit compare: what has changed since an earlier visit.
+#include <cstdio>
+#include <format>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "pllit/io/ply.hpp"
+#include "pllit/io/session.hpp"
+#include "pllit/map/visit_changes.hpp"
+#include "pllit/slam/relocalisation.hpp"
+#include "program.hpp"
+
+namespace pllit::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string baseline;
+  std::vector<std::string> sessions;
+  bool json = false;
+};
+
+struct Visit {
+  VisitMap map;
+  PointTable heat;
+};
+
+Expected<Visit> read_visit(const fs::path& folder) {
+  auto session = open_session(folder);
+  if (!session) return std::unexpected(session.error());
+  if (!fs::exists(folder / "thermal_map.ply"))
+    return input_error(std::format("'{}' holds no thermal_map.ply: that run saw no images", folder.string()));
+  auto heat = read_ply(folder / "thermal_map.ply");
+  if (!heat) return std::unexpected(heat.error());
+  return Visit{{std::move(session->trajectory), std::move(session->map.points)}, std::move(*heat)};
+}
+
+Json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json change_json(const VisitChange& change) {
+  return {{"kind", name_of(change.kind)},
+          {"position_m", vector_json(change.position_W)},
+          {"extent_m", vector_json(change.extent_m)},
+          {"voxels", change.voxels},
+          {"change", {{"mean", change.mean}, {"peak", change.peak}}},
+          {"change_sigmas", {{"mean", change.mean_sigmas}}}};
+}
+
+/// One visit against the baseline.
+Expected<Json> compared(const Visit& baseline, const std::string& folder) {
+  auto visit = read_visit(folder);
+  if (!visit) return std::unexpected(visit.error());
+  const auto located = relocalise(baseline.map, visit->map);
+  if (!located) return in_context(std::format("comparing '{}'", folder), located.error());
+  for (Vector3f& p_W : visit->heat.points) p_W = located->T_A_B.act(p_W.cast<double>()).cast<float>();
+  const VisitChanges found = changes_between(baseline.heat, visit->heat, baseline.map.points_W);
+  const Eigen::Quaterniond q = located->T_A_B.quat();
+  Json json{
+      {"session", folder},
+      {"T_baseline_session",
+       {{"translation_m", vector_json(located->T_A_B.translation())}, {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}}},
+      {"relocalisation",
+       {{"places", located->places},
+        {"agreeing", located->agreeing},
+        {"overlap", located->overlap},
+        {"rmse_m", located->rmse_m}}},
+      {"voxels", {{"shared", found.shared}, {"not_seen_again", found.only_before}, {"only_now", found.only_now}}},
+      {"drift",
+       {{"holds", found.drift.holds},
+        {"gain", found.drift.curve.gain},
+        {"bias", found.drift.curve.bias},
+        {"rms", found.drift.rms}}},
+      {"changes", Json::array()}};
+  for (const VisitChange& change : found.changes) json["changes"].push_back(change_json(change));
+  return json;
+}
+
+std::string text_of(const Json& visit) {
+  const int shared = visit["voxels"]["shared"], missed = visit["voxels"]["not_seen_again"];
+  std::string text =
+      std::format("{}\n  found its place: {} of {} places agree, {:.0f} mm across surfaces\n",
+                  visit["session"].get<std::string>(), visit["relocalisation"]["agreeing"].get<int>(),
+                  visit["relocalisation"]["places"].get<int>(), 1e3 * visit["relocalisation"]["rmse_m"].get<double>());
+  text += std::format("  seen again: {:.0f} % of the baseline's surfaces ({} voxels)\n",
+                      100.0 * shared / std::max(1, shared + missed), shared);
+  if (!visit["drift"]["holds"].get<bool>())
+    return text + "  the visits' intensities fit to each other by no curve: nothing is said about changes\n";
+  for (const Json& change : visit["changes"]) {
+    const auto p = change["position_m"].get<std::array<double, 3>>();
+    text += std::format(
+        "  {:8} at ({:.2f}, {:.2f}, {:.2f}) m: {:+.1f} on average, {:+.1f} at most, {:.1f} sigma, {} voxels\n",
+        change["kind"].get<std::string>(), p[0], p[1], p[2], change["change"]["mean"].get<double>(),
+        change["change"]["peak"].get<double>(), change["change_sigmas"]["mean"].get<double>(),
+        change["voxels"].get<int>());
+  }
+  return text + (visit["changes"].empty() ? "  nothing has changed\n" : "");
+}
+
+ExitCode run(const Options& options) {
+  const auto baseline = read_visit(options.baseline);
+  if (!baseline) return report(baseline.error());
+  Json json{{"schema_version", kSchemaVersion}, {"baseline", options.baseline}, {"sessions", Json::array()}};
+  std::string text;
+  for (const std::string& folder : options.sessions) {
+    const auto visit = compared(*baseline, folder);
+    if (!visit) return report(visit.error());
+    text += text_of(*visit);
+    json["sessions"].push_back(*visit);
+  }
+  std::fputs((options.json ? json.dump(2) + "\n" : text).c_str(), stdout);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Verb add_compare(CLI::App& program) {
+  CLI::App* verb =
+      program.add_subcommand("compare", "Find a visit's place in an earlier one, and what has changed since");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("baseline", options->baseline, "Session of the earlier visit")->type_name("BASELINE")->required();
+  verb->add_option("session", options->sessions, "Sessions of later visits")->type_name("SESSION...")->required();
+  verb->add_flag("--json", options->json, "Print the comparison as JSON");
+  verb->footer(
+      "Examples:\n"
+      "  pllit compare results/monday results/friday\n"
+      "  pllit compare results/monday results/tuesday results/friday --json");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace pllit::app

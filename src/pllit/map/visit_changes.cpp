@@ -1,0 +1,167 @@
+#include "pllit/map/visit_changes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "pllit/geometry/voxel_table.hpp"
+
+namespace pllit {
+namespace {
+
+/// What a visit knows of a voxel: means over the points of its table that were seen often enough.
+struct Known {
+  Vector3d sum_W = Vector3d::Zero();
+  double value = 0.0, variance = 0.0;
+  int points = 0;
+
+  Vector3d mean_W() const { return sum_W / points; }
+  double mean() const { return value / points; }
+  double mean_variance() const { return variance / points; }
+};
+using Voxels = std::map<VoxelKey, Known>;
+
+const std::vector<float>* field(const PointTable& table, std::string_view name) {
+  const auto found = std::ranges::find(table.fields, name, &ScalarField::name);
+  return found == table.fields.end() ? nullptr : &found->values;
+}
+
+Voxels voxels_of(const PointTable& table, std::string_view value, const VisitChangesConfig& config) {
+  const auto *values = field(table, value), *images = field(table, "images"), *sigmas = field(table, "sigma");
+  Voxels voxels;
+  if (!values || !images || !sigmas) return voxels;
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    if ((*images)[i] < static_cast<float>(config.images)) continue;
+    Known& known = voxels[voxel_key(voxel_of(table.points[i], 1.0 / config.voxel_m))];
+    known.sum_W += table.points[i].cast<double>();
+    known.value += static_cast<double>((*values)[i]);
+    known.variance += std::pow(static_cast<double>((*sigmas)[i]), 2);
+    ++known.points;
+  }
+  return voxels;
+}
+
+template <class Visit>
+void for_neighbours(VoxelKey key, int reach, const Visit& visit) {
+  const Eigen::Vector3i centre = voxel_of_key(key);
+  for (int x = -reach; x <= reach; ++x)
+    for (int y = -reach; y <= reach; ++y)
+      for (int z = -reach; z <= reach; ++z) visit(voxel_key(centre + Eigen::Vector3i(x, y, z)));
+}
+
+AnchorFit drift_between(const Voxels& before, const Voxels& now, const VisitChangesConfig& config) {
+  std::vector<AnchorPair> pairs;
+  for (const auto& [key, seen] : now)
+    if (const auto found = before.find(key); found != before.end())
+      pairs.push_back({.now = static_cast<float>(seen.mean()),
+                       .normal = static_cast<float>(found->second.mean()),
+                       .normal_variance = static_cast<float>(found->second.mean_variance() / 10.0)});
+  return anchor_curve(pairs, {}, config.drift);
+}
+
+struct Changed {
+  VisitChangeKind kind;
+  Vector3d p_W;
+  double change, sigmas;
+};
+
+/// Changes of surfaces that both visits saw, by at least the gate. At seams one of two neighbouring voxels may hold
+/// what the other held: a change that a neighbour's past explains is none.
+void add_known(const Voxels& before, const Voxels& now, const VisitChanges& result, const VisitChangesConfig& config,
+               std::map<VoxelKey, Changed>& changed) {
+  for (const auto& [key, seen] : now) {
+    const auto past = before.find(key);
+    if (past == before.end()) continue;
+    const double value = result.drift.curve(seen.mean()), change = value - past->second.mean();
+    const double sigma = std::sqrt(past->second.mean_variance() + seen.mean_variance() + std::pow(result.drift.rms, 2));
+    if (std::abs(change) < std::max(config.min_change, config.gate_sigmas * sigma)) continue;
+    bool explained = false;
+    for_neighbours(key, 1, [&](VoxelKey next) {
+      const auto other = before.find(next);
+      explained = explained || (next != key && other != before.end() && (value - other->second.mean()) / change < 0.5);
+    });
+    if (explained) continue;
+    changed.emplace(key, Changed{change > 0.0 ? VisitChangeKind::hotter : VisitChangeKind::cooler, seen.mean_W(),
+                                 change, change / sigma});
+  }
+}
+
+/// Surfaces that the first visit's LiDAR did not know amid others that it knew.
+void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& known_before,
+             const VisitChanges& result, const VisitChangesConfig& config, std::map<VoxelKey, Changed>& changed) {
+  const int reach = std::max(1, static_cast<int>(config.surround_m / config.voxel_m));
+  for (const auto& [key, seen] : now) {
+    int near = 0;
+    for_neighbours(key, 2, [&](VoxelKey next) { near += known_before.contains(next) ? 1 : 0; });
+    if (near > 0) continue;
+    std::vector<double> around;
+    for_neighbours(key, reach, [&](VoxelKey next) {
+      if (const auto past = before.find(next); past != before.end()) around.push_back(past->second.mean());
+    });
+    if (around.size() < 12) continue;
+    std::ranges::sort(around);
+    const auto at = [&](double share) { return around[static_cast<std::size_t>(share * double(around.size() - 1))]; };
+    const double change = result.drift.curve(seen.mean()) - at(0.75);
+    const double sigma = std::hypot((at(0.75) - at(0.25)) / 1.349, result.drift.rms, std::sqrt(seen.mean_variance()));
+    if (change > std::max(config.min_change, config.gate_sigmas * sigma))
+      changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma});
+  }
+}
+
+VisitChange summed(const std::vector<Changed>& cluster) {
+  VisitChange change{.kind = cluster.front().kind, .voxels = static_cast<int>(cluster.size())};
+  Eigen::AlignedBox3d box_W;
+  for (const Changed& one : cluster) {
+    box_W.extend(one.p_W);
+    change.position_W += one.p_W / double(cluster.size());
+    change.mean += one.change / double(cluster.size());
+    change.mean_sigmas += one.sigmas / double(cluster.size());
+    if (std::abs(one.change) > std::abs(change.peak)) change.peak = one.change;
+  }
+  change.extent_m = box_W.sizes();
+  return change;
+}
+
+/// Changed voxels of one kind that hang together.
+std::vector<VisitChange> clusters(std::map<VoxelKey, Changed> changed, int min_voxels) {
+  std::vector<VisitChange> found;
+  while (!changed.empty()) {
+    std::vector<VoxelKey> open{changed.begin()->first};
+    const VisitChangeKind kind = changed.begin()->second.kind;
+    std::vector<Changed> cluster;
+    while (!open.empty()) {
+      const VoxelKey key = open.back();
+      open.pop_back();
+      const auto node = changed.find(key);
+      if (node == changed.end() || node->second.kind != kind) continue;
+      cluster.push_back(node->second);
+      changed.erase(node);
+      for_neighbours(key, 1, [&](VoxelKey next) { open.push_back(next); });
+    }
+    if (static_cast<int>(cluster.size()) >= min_voxels) found.push_back(summed(cluster));
+  }
+  std::ranges::stable_sort(found, std::greater{}, [](const VisitChange& c) { return std::abs(c.mean_sigmas); });
+  return found;
+}
+
+}  // namespace
+
+VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Vector3f> before_points_W,
+                             const VisitChangesConfig& config) {
+  const Voxels past = voxels_of(before, "normal", config), present = voxels_of(now, "intensity", config);
+  VisitChanges result{.drift = drift_between(past, present, config)};
+  for (const auto& [key, known] : present) ++(past.contains(key) ? result.shared : result.only_now);
+  result.only_before = static_cast<int>(past.size()) - result.shared;
+  if (!result.drift.holds) return result;
+  std::set<VoxelKey> known_before;
+  for (const Vector3f& p_W : before_points_W) known_before.insert(voxel_key(voxel_of(p_W, 1.0 / config.voxel_m)));
+  std::map<VoxelKey, Changed> changed;
+  add_known(past, present, result, config, changed);
+  add_new(past, present, known_before, result, config, changed);
+  result.changes = clusters(std::move(changed), config.min_voxels);
+  return result;
+}
+
+}  // namespace pllit

@@ -1,0 +1,53 @@
+// What differs between two visits' thermographic maps, hours or days apart.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "pllit/map/anchor.hpp"
+#include "pllit/state/table.hpp"
+
+namespace pllit {
+
+enum class VisitChangeKind {
+  hotter,
+  cooler,
+  new_hot  ///< a surface where the first visit had none, hotter than what stands around it
+};
+constexpr std::string_view name_of(VisitChangeKind kind) {
+  return kind == VisitChangeKind::hotter ? "hotter" : kind == VisitChangeKind::cooler ? "cooler" : "new_hot";
+}
+
+struct VisitChangesConfig {
+  double voxel_m = 0.1;      ///< maps of two visits lie on each other to a few centimetres
+  int images = 6;            ///< of a surface on each visit, at least
+  double min_change = 30.0;  ///< in the map's unit
+  double gate_sigmas = 3.0;  ///< of the surface's spread and of the drift's fit
+  int min_voxels = 4;        ///< smaller clusters are noise
+  double surround_m = 0.8;   ///< how far around a new surface its surroundings are looked at
+  AnchorConfig drift{.loss = 20.0, .min_pairs = 60, .min_share = 0.4};  ///< of what came in between: weather, gain
+};
+
+/// A cluster of changed voxels; changes in the unit of the first map, signed.
+struct VisitChange {
+  VisitChangeKind kind = VisitChangeKind::hotter;
+  Vector3d position_W = Vector3d::Zero();
+  Vector3d extent_m = Vector3d::Zero();
+  int voxels = 0;
+  double mean = 0.0, peak = 0.0, mean_sigmas = 0.0;
+};
+
+struct VisitChanges {
+  AnchorFit drift{};  ///< second visit's intensities to the first's, over surfaces that both saw
+  int shared = 0, only_before = 0, only_now = 0;  ///< voxels
+  std::vector<VisitChange> changes{};             ///< greatest first; empty where the drift does not hold
+};
+
+/// Compares two maps as ThermalMap::table gives them, the second moved into the first's world. `before_points_W` is
+/// what the first visit's LiDAR saw: a surface counts as new only where that knows the surroundings and not the
+/// surface.
+VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Vector3f> before_points_W,
+                             const VisitChangesConfig& config = {});
+
+}  // namespace pllit

@@ -1,0 +1,88 @@
+#include "pllit/map/visit_changes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/random_states.hpp"
+
+namespace pllit {
+namespace {
+
+using test::Random;
+
+/// What the later visit finds different about a wall.
+struct Difference {
+  double gain = 1.0, bias = 0.0;  ///< of all
+  double patch = 0.0;             ///< of a third of a metre in the middle
+  bool box = false;               ///< a hot thing in front of the wall
+};
+
+/// Three metres by two of a wall with warm and cool bricks, as a thermographic map.
+PointTable wall(Random& random, const Difference& difference = {}) {
+  PointTable table{.points = {}, .fields = {{"intensity", {}}, {"normal", {}}, {"sigma", {}}, {"images", {}}}};
+  const auto add = [&](const Vector3f& p, double value) {
+    table.points.push_back(p);
+    table.fields[0].values.push_back(static_cast<float>(value));
+    table.fields[1].values.push_back(static_cast<float>(value));
+    table.fields[2].values.push_back(5.0F);
+    table.fields[3].values.push_back(20.0F);
+  };
+  for (int i = 0; i < 60; ++i)
+    for (int k = 0; k < 40; ++k) {
+      const Vector3f p(0.05F * static_cast<float>(i) + 0.02F, 4.02F, 0.05F * static_cast<float>(k) + 0.02F);
+      double value = 100.0 + 40.0 * ((i / 8 + k / 8) % 2) + random.normal(2.0);
+      if (std::abs(i - 30) < 4 && std::abs(k - 20) < 4) value += difference.patch;
+      add(p, difference.gain * value + difference.bias);
+    }
+  if (difference.box)
+    for (int i = 0; i < 6; ++i)
+      for (int k = 0; k < 6; ++k)
+        add({0.8F + 0.05F * static_cast<float>(i), 3.52F, 0.8F + 0.05F * static_cast<float>(k)},
+            difference.gain * 280.0 + difference.bias);
+  return table;
+}
+
+VisitChanges between(const Difference& difference) {
+  Random random(1);
+  const PointTable before = wall(random);
+  return changes_between(before, wall(random, difference), before.points);
+}
+
+TEST(VisitChanges, AreNoneWhereOnlyTheWeatherChanged) {
+  const VisitChanges found = between({.gain = 1.3, .bias = -25.0});
+  EXPECT_TRUE(found.drift.holds);
+  EXPECT_GT(found.shared, 300);
+  EXPECT_EQ(found.only_before + found.only_now, 0);
+  EXPECT_TRUE(found.changes.empty());
+}
+
+TEST(VisitChanges, TellWhatBecameHotterAndCoolerWhateverTheWeather) {
+  for (const double patch : {80.0, -80.0}) {
+    const VisitChanges found = between({.gain = 0.8, .bias = 30.0, .patch = patch});
+    ASSERT_EQ(found.changes.size(), 1u);
+    const VisitChange& change = found.changes.front();
+    EXPECT_EQ(change.kind, patch > 0.0 ? VisitChangeKind::hotter : VisitChangeKind::cooler);
+    EXPECT_NEAR(change.mean, patch, 20.0);  // voxels on its rim hold both
+    EXPECT_LT((change.position_W - Vector3d(1.52, 4.02, 1.02)).norm(), 0.06);
+  }
+}
+
+TEST(VisitChanges, TellAHotThingThatWasNotThere) {
+  const VisitChanges found = between({.box = true});
+  ASSERT_EQ(found.changes.size(), 1u);
+  EXPECT_EQ(found.changes.front().kind, VisitChangeKind::new_hot);
+  EXPECT_LT((found.changes.front().position_W - Vector3d(0.92, 3.52, 0.92)).norm(), 0.06);
+}
+
+TEST(VisitChanges, SayNothingWhereTheVisitsShareTooLittle) {
+  Random random(2);
+  PointTable before = wall(random), elsewhere = wall(random);
+  for (Vector3f& p : elsewhere.points) p.x() += 50.0F;
+  const VisitChanges found = changes_between(before, elsewhere, before.points);
+  EXPECT_FALSE(found.drift.holds);
+  EXPECT_EQ(found.shared, 0);
+  EXPECT_TRUE(found.changes.empty());
+  EXPECT_FALSE(changes_between({}, {}, {}).drift.holds);
+}
+
+}  // namespace
+}  // namespace pllit
