@@ -79,7 +79,7 @@ class EvalFindings : public EvalVerb {
   std::string session() const {
     std::filesystem::create_directory(path("session"));
     truth();
-    walk("session/odometry.tum", [](double x, double y) { return std::array{-y, x, 0.0}; });
+    walk("session/trajectory.tum", [](double x, double y) { return std::array{-y, x, 0.0}; });
     Anomaly found{.id = 1, .state = AnomalyState::confirmed};
     found.position_W = {-4.0, 3.04, 1.0};
     found.confirmed = Time(std::chrono::milliseconds(1'025'700));
@@ -115,7 +115,7 @@ TEST_F(EvalFindings, NeedOneSessionThatHoldsAnomalies) {
     return outcome.err;
   };
   EXPECT_THAT(message({"eval", "--findings", scene(), session(), session()}), HasSubstr("one session"));
-  EXPECT_THAT(message({"eval", truth()}), HasSubstr("ESTIMATE.tum"));
+  EXPECT_THAT(message({"eval", truth()}), HasSubstr("estimate is required"));
   const std::string folder = session();
   std::filesystem::remove(folder + "/anomalies.json");
   EXPECT_THAT(message({"eval", "--findings", scene(), folder}), HasSubstr("anomalies.json"));
