@@ -18,12 +18,18 @@ struct VisitMap {
 struct RelocalisationConfig {
   double spacing_m = 4.0;  ///< of the way between places that are compared
   double range_m = 40.0;   ///< of the map around a place
-  double voxel_m = 0.25;   ///< spacing of its points
+  double voxel_m = 0.1;    ///< spacing of its points
   int tried = 3;           ///< places of the first visit that are looked at for each of the second
   int most_places = 40;    ///< of the second visit; more say no more
   double agree_m = 0.5, agree_deg = 2.0;
   int agreeing = 2;  ///< places that must agree; all, where there are fewer
-  RegistrationConfig registration{.min_overlap = 0.5, .max_rmse_m = 0.12, .min_information = 0.003};
+  /// Finer than for loops: rooms are narrow.
+  RegistrationConfig registration{.coarse_m = 0.75,
+                                  .fine_m = 0.25,
+                                  .iterations = 20,
+                                  .min_overlap = 0.6,
+                                  .max_rmse_m = 0.12,
+                                  .min_information = 0.003};
 };
 
 struct Relocalisation {
