@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include "pllit/io/anomalies_file.hpp"
-#include "pllit/io/ply.hpp"
 #include "pllit/report/report.hpp"
 #include "pllit/slam/frame_table.hpp"
 
@@ -24,24 +23,18 @@ void log_alarm(const Anomaly& anomaly) {
                name_of(anomaly.kind), p_W.x(), p_W.y(), p_W.z(), anomaly.mean_sigmas);
 }
 
-/// What loops moved, moved.
-struct Moved {
-  std::vector<Anomaly> anomalies;
-  PointTable map, points;
-};
-
-Expected<Moved> moved_heat(const SessionWriter& session, const Thermography& thermography, const LoopResult& loops) {
-  Moved moved{thermography.anomalies(), thermography.map().table(), thermography.anomaly_points()};
-  if (loops.accepted == 0 || !loops.stopped.empty()) return moved;
+Expected<SessionHeat> moved_heat(const SessionWriter& session, const Thermography& thermography,
+                                 const LoopResult& loops) {
+  SessionHeat heat{thermography, thermography.anomalies(), thermography.map().table(), thermography.anomaly_points()};
+  if (!loops.closed()) return heat;
   const auto odometry = read_interrupted_tum(session.folder() / "odometry.tum");
   if (!odometry) return std::unexpected(odometry.error());
   const Time start = thermography.map().start().value_or(Time{});
-  move_points(moved.map, "seen_s", start, loops.correction, *odometry);
-  move_points(moved.points, "seen_s", start, loops.correction, *odometry);
-  for (Anomaly& anomaly : moved.anomalies)
+  for (PointTable* table : {&heat.map, &heat.points}) move_points(*table, "seen_s", start, loops.correction, *odometry);
+  for (Anomaly& anomaly : heat.anomalies)
     if (const auto T_O_I = pose_at(*odometry, anomaly.last_seen, std::chrono::seconds(1)))
       anomaly.position_W = loops.correction.T_M_O(anomaly.last_seen, *T_O_I).act(anomaly.position_W);
-  return moved;
+  return heat;
 }
 
 double number(const std::string& text) {
@@ -50,8 +43,7 @@ double number(const std::string& text) {
   return value;
 }
 
-/// Frames in a row that were not good for the same reasons. Numbers in reasons differ from frame to frame; the first
-/// frame's stand.
+/// Frames in a row that were in one state that is not good.
 std::vector<DoubtfulStretch> doubts_of(const CsvTable& health) {
   const auto column = [&](const char* name) {
     return static_cast<std::size_t>(std::ranges::find(health.columns, name) - health.columns.begin());
@@ -91,33 +83,32 @@ Expected<void> AlarmTeller::tell(SessionWriter& session, const Thermography& the
   return changed ? write_anomalies(session, anomalies, thermography.config().unit) : Expected<void>{};
 }
 
-Expected<void> write_heat(SessionWriter& session, const Thermography& thermography, const LoopResult& loops) {
-  const auto moved = moved_heat(session, thermography, loops);
-  if (!moved) return std::unexpected(moved.error());
-  if (auto done = write_anomalies(session, moved->anomalies, thermography.config().unit); !done) return done;
-  if (auto done = session.write_cloud("thermal_map.ply", moved->map); !done) return done;
-  return session.write_cloud("anomalies.ply", moved->points);
+Expected<SessionHeat> write_heat(SessionWriter& session, const Thermography& thermography, const LoopResult& loops) {
+  auto heat = moved_heat(session, thermography, loops);
+  if (!heat) return heat;
+  auto done = write_anomalies(session, heat->anomalies, thermography.config().unit);
+  if (done) done = session.write_cloud("thermal_map.ply", heat->map);
+  if (done) done = session.write_cloud("anomalies.ply", heat->points);
+  if (!done) return std::unexpected(done.error());
+  return heat;
 }
 
-Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run,
-                            const Thermography* thermography) {
+Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run, const SessionHeat* heat) {
   auto whole = open_session(session.folder());
   if (!whole) return std::unexpected(whole.error());
   ReportContent content{.title = "Inspection " + whole->folder.filename().string(),
                         .trajectory = std::move(whole->trajectory),
                         .map = std::move(whole->map),
                         .doubts = doubts_of(whole->health)};
-  if (thermography) {
-    content.has_images = thermography->map().size() > 0;
-    content.unit = thermography->config().unit;
-    content.voxel_m = thermography->config().map.voxel_m;
-    auto map = read_ply(whole->folder / "thermal_map.ply");
-    if (!map) return std::unexpected(map.error());
-    content.thermal_map = std::move(*map);
-    auto anomalies = read_anomalies(whole->folder / "anomalies.json");
-    if (!anomalies) return std::unexpected(anomalies.error());
-    content.anomalies = std::move(*anomalies);
-    content.crops = thermography->crops();
+  if (heat) {
+    const ThermographyConfig& config = heat->stage.config();
+    content.has_images = heat->stage.map().size() > 0;
+    content.unit = config.unit;
+    content.voxel_m = config.map.voxel_m;
+    content.known_after = config.map.model.learned_after;
+    content.thermal_map = heat->map;
+    content.anomalies = heat->anomalies;
+    content.crops = heat->stage.crops();
   }
   return session.write_text("report.html", report_html(content, run));
 }

@@ -23,11 +23,17 @@ class AlarmTeller {
   std::map<std::uint32_t, AnomalyState> told_;
 };
 
-/// Writes anomalies.json, thermal_map.ply and anomalies.ply, where loop closing moved them.
-Expected<void> write_heat(SessionWriter& session, const Thermography& thermography, const LoopResult& loops);
+/// What the stage has come to, where loop closing moved it.
+struct SessionHeat {
+  const Thermography& stage;
+  std::vector<Anomaly> anomalies;
+  PointTable map, points;
+};
 
-/// Writes report.html from what the session holds and `run`, its run.json.
-Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run,
-                            const Thermography* thermography);
+/// Writes anomalies.json, thermal_map.ply and anomalies.ply, and gives what they hold.
+Expected<SessionHeat> write_heat(SessionWriter& session, const Thermography& thermography, const LoopResult& loops);
+
+/// Writes report.html from what the session holds and `run`, its run.json; `heat` is null where there was no camera.
+Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run, const SessionHeat* heat);
 
 }  // namespace pllit::app

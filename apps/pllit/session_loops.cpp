@@ -20,7 +20,7 @@ Expected<void> write_candidates(const std::filesystem::path& file, const std::ve
 
 Expected<void> write_loops(SessionWriter& session, const LoopResult& loops) {
   if (const auto done = write_candidates(session.folder() / "loops.csv", loops.records); !done) return done;
-  if (loops.accepted == 0 || !loops.stopped.empty()) return {};
+  if (!loops.closed()) return {};
   const auto odometry = read_interrupted_tum(session.folder() / "odometry.tum");
   if (!odometry) return std::unexpected(odometry.error());
   if (const auto done = session.replace_trajectory(loops.correction.corrected(*odometry)); !done) return done;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "pllit/geometry/lie_json.hpp"
 #include "pllit/io/ply.hpp"
 #include "pllit/io/session.hpp"
 #include "pllit/map/visit_changes.hpp"
@@ -37,8 +38,6 @@ Expected<Visit> read_visit(const fs::path& folder) {
   return Visit{{std::move(session->trajectory), std::move(session->map.points)}, std::move(*heat)};
 }
 
-Json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 Json change_json(const VisitChange& change) {
   return {{"kind", name_of(change.kind)},
           {"position_m", vector_json(change.position_W)},
@@ -56,23 +55,20 @@ Expected<Json> compared(const Visit& baseline, const std::string& folder) {
   if (!located) return in_context(std::format("comparing '{}'", folder), located.error());
   for (Vector3f& p_W : visit->heat.points) p_W = located->T_A_B.act(p_W.cast<double>()).cast<float>();
   const VisitChanges found = changes_between(baseline.heat, visit->heat, baseline.map.points_W);
-  const Eigen::Quaterniond q = located->T_A_B.quat();
-  Json json{
-      {"session", folder},
-      {"T_baseline_session",
-       {{"translation_m", vector_json(located->T_A_B.translation())}, {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}}},
-      {"relocalisation",
-       {{"places", located->places},
-        {"agreeing", located->agreeing},
-        {"overlap", located->overlap},
-        {"rmse_m", located->rmse_m}}},
-      {"voxels", {{"shared", found.shared}, {"not_seen_again", found.only_before}, {"only_now", found.only_now}}},
-      {"drift",
-       {{"holds", found.drift.holds},
-        {"gain", found.drift.curve.gain},
-        {"bias", found.drift.curve.bias},
-        {"rms", found.drift.rms}}},
-      {"changes", Json::array()}};
+  Json json{{"session", folder},
+            {"T_baseline_session", pose_json(located->T_A_B)},
+            {"relocalisation",
+             {{"places", located->places},
+              {"agreeing", located->agreeing},
+              {"overlap", located->overlap},
+              {"rmse_m", located->rmse_m}}},
+            {"voxels", {{"shared", found.shared}, {"not_seen_again", found.only_before}, {"only_now", found.only_now}}},
+            {"drift",
+             {{"holds", found.drift.holds},
+              {"gain", found.drift.curve.gain},
+              {"bias", found.drift.curve.bias},
+              {"rms", found.drift.rms}}},
+            {"changes", Json::array()}};
   for (const VisitChange& change : found.changes) json["changes"].push_back(change_json(change));
   return json;
 }

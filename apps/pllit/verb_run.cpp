@@ -43,7 +43,7 @@ FrameSink session_sink(SessionWriter& session, MapRecorder& map, const std::opti
     const NavState& state = frame.posterior.mean;
     if (auto done = session.append_pose({state.time, state.T_W_I()}); !done) return done;
     if (auto done = session.append_health(health_row(frame)); !done) return done;
-    if (thermography)
+    if (thermography && frame.image)
       if (auto done = alarms.tell(session, *thermography, state.time); !done) return done;
     return session.append_map(map.new_points(frame));
   };
@@ -133,6 +133,14 @@ class SessionRun {
     return write_loops(session_, loops_);
   }
 
+  Expected<void> close_heat() {
+    if (!thermography_) return {};
+    auto written = write_heat(session_, *thermography_, loops_);
+    if (!written) return std::unexpected(written.error());
+    heat_.emplace(std::move(*written));
+    return {};
+  }
+
   Expected<ExitCode> finish(const RunSummary& summary, const Expected<void>& result) {
     const char* status = !result ? "failed" : summary.interrupted ? "interrupted" : "done";
     auto json = run_json(summary, options_, config_, status);
@@ -141,12 +149,12 @@ class SessionRun {
                      {"rejected", loops_.records.size() - static_cast<std::size_t>(loops_.accepted)}};
     const auto scene = source_.scene_json ? write_file(session_.folder() / "scene.json", source_.scene_json() + "\n")
                                           : Expected<void>{};
-    const auto heat = thermography_ ? write_heat(session_, *thermography_, loops_) : Expected<void>{};
+    const auto heat = close_heat();
     auto scored = summary.frames > 1 ? add_scores(json, truth_, session_.folder()) : Expected<void>{};
-    if (scored && heat && thermography_ && source_.scene_json && summary.frames > 1) scored = add_findings(json);
+    if (scored && heat && heat_ && source_.scene_json && summary.frames > 1) scored = add_findings(json);
     if (!scored) json["notes"].push_back(scored.error().message);
     const auto written = session_.write_run(json);
-    const auto reported = heat ? write_report(session_, json, thermography_ ? &*thermography_ : nullptr) : heat;
+    const auto reported = heat ? write_report(session_, json, heat_ ? &*heat_ : nullptr) : heat;
     print(json);
     // What stopped the run comes first: a full disk hits these files too.
     for (const auto* done : {&result, &written, &scene, &heat, &reported})
@@ -193,6 +201,7 @@ class SessionRun {
   std::optional<Thermography> thermography_;  // none without a camera
   std::optional<LoopStage> loop_stage_;       // none where loop closing is off
   LoopResult loops_;
+  std::optional<SessionHeat> heat_;  // once written
 };
 
 Expected<ExitCode> run_session(const Options& options) {

@@ -6,14 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "pllit/geometry/lie_json.hpp"
 #include "pllit/io/file.hpp"
 
 namespace pllit {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Json crop_json(const ImageCrop& crop) {
   return {{"time_s", to_seconds(crop.time)},

@@ -56,14 +56,12 @@ SearchWindow LoopCloser::window_for(const Anchor& here, const Candidate& candida
   if (candidate.found_by == FoundBy::descriptor)
     return {{Eigen::Vector2d::Zero(), candidate.alignment.yaw_rad}, descriptor_reach_m, descriptor_reach_rad};
   const LoopKeyframe &earlier = keyframes_[static_cast<std::size_t>(there.keyframe)],
-                 &later = keyframes_[static_cast<std::size_t>(here.keyframe)];
+                     &later = keyframes_[static_cast<std::size_t>(here.keyframe)];
   const UncertainMotion motion = expected(there.keyframe, here.keyframe);
   const SE3 T_a_b = pose_from(levelled(earlier.up_I), Vector3d::Zero()) * motion.T_a_b *
                     pose_from(levelled(later.up_I).inverse(), Vector3d::Zero());
-  const Matrix3d R = T_a_b.rotation();
   const double turn_sigma_rad = std::sqrt(motion.covariance.topLeftCorner<3, 3>().trace());
-  return {{T_a_b.translation().head<2>(), std::atan2(R(1, 0), R(0, 0))},
-          std::min(most_m, 1.5 + 3.0 * position_sigma_m(motion)),
+  return {in_plane(T_a_b), std::min(most_m, 1.5 + 3.0 * position_sigma_m(motion)),
           std::min(most_rad, 0.05 + 3.0 * turn_sigma_rad)};
 }
 

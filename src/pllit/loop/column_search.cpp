@@ -86,11 +86,4 @@ double overlap(const ColumnField& a, const std::vector<Column>& b, const PlanePo
   return looked_at > 0 ? static_cast<double>(met) / looked_at : 0.0;
 }
 
-std::vector<Column> thinned_columns(const std::vector<Column>& columns, std::size_t count) {
-  if (columns.size() <= count) return columns;
-  std::vector<Column> kept;
-  for (std::size_t i = 0; i < count; ++i) kept.push_back(columns[i * columns.size() / count]);
-  return kept;
-}
-
 }  // namespace pllit

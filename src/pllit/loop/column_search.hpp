@@ -1,6 +1,8 @@
 // Where the upright things of one submap meet those of another: the first, coarse step of a registration.
 #pragma once
 
+#include <cmath>
+
 #include "pllit/loop/submap.hpp"
 
 namespace pllit {
@@ -10,6 +12,12 @@ struct PlanePose {
   Eigen::Vector2d t_m = Eigen::Vector2d::Zero();
   double yaw_rad = 0.0;
 };
+
+/// What a motion between level frames is in the plane.
+inline PlanePose in_plane(const SE3& T_a_b) {
+  const Matrix3d R = T_a_b.rotation();
+  return {T_a_b.translation().head<2>(), std::atan2(R(1, 0), R(0, 0))};
+}
 
 struct SearchWindow {
   PlanePose centre;
@@ -46,7 +54,13 @@ ColumnMatch search(const ColumnField& a, const std::vector<Column>& b, const Sea
 /// Share of b's columns within `radius_m` of its anchor that have one of a's within 0.7 m.
 double overlap(const ColumnField& a, const std::vector<Column>& b, const PlanePose& T_a_b, double radius_m);
 
-/// At most `count` columns, evenly by index.
-std::vector<Column> thinned_columns(const std::vector<Column>& columns, std::size_t count);
+/// At most `count` values, evenly by index.
+template <class Value>
+std::vector<Value> evenly(const std::vector<Value>& values, std::size_t count) {
+  if (values.size() <= count) return values;
+  std::vector<Value> kept;
+  for (std::size_t i = 0; i < count; ++i) kept.push_back(values[i * values.size() / count]);
+  return kept;
+}
 
 }  // namespace pllit

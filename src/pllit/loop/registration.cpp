@@ -96,18 +96,6 @@ Matrix6 covariance_of(const Sums& sums, double rmse_m, const RegistrationConfig&
   return covariance;
 }
 
-std::vector<Vector3f> evenly(const std::vector<Vector3f>& points, std::size_t count) {
-  if (points.size() <= count) return points;
-  std::vector<Vector3f> kept;
-  for (std::size_t i = 0; i < count; ++i) kept.push_back(points[i * points.size() / count]);
-  return kept;
-}
-
-double yaw_of(const SE3& T) {
-  const Matrix3d R = T.rotation();
-  return std::atan2(R(1, 0), R(0, 0));
-}
-
 Registration refined(const Submap& a, const ColumnField& field, const Submap& b, const SE3& guess,
                      const RegistrationConfig& config) {
   const std::vector<Vector3f> points_b = evenly(b.points_H, matched_points);
@@ -117,8 +105,7 @@ Registration refined(const Submap& a, const ColumnField& field, const Submap& b,
       iterated(PlaneGrid(a.points_H, config.fine_m), points_b, coarse.T_a_b, 0.2 * config.fine_m, config.iterations);
   Registration result{.T_a_b = fine.T_a_b};
   if (fine.sums.matched < 20) return result;
-  result.overlap =
-      overlap(field, b.columns, {fine.T_a_b.translation().head<2>(), yaw_of(fine.T_a_b)}, overlap_radius_m);
+  result.overlap = overlap(field, b.columns, in_plane(fine.T_a_b), overlap_radius_m);
   result.matched = static_cast<double>(fine.sums.matched) / static_cast<double>(points_b.size());
   result.rmse_m = std::sqrt(fine.sums.squared_m2 / fine.sums.matched);
   result.information = weakest_information(fine.sums);
@@ -175,7 +162,7 @@ const PlaneGrid::Plane* PlaneGrid::find(const Vector3f& p) const {
 Registration register_submaps(const Submap& a, const Submap& b, const SearchWindow& window,
                               const RegistrationConfig& config) {
   const ColumnField field(a.columns);
-  const ColumnMatch match = search(field, thinned_columns(b.columns, searched_columns), window);
+  const ColumnMatch match = search(field, evenly(b.columns, searched_columns), window);
   const SE3 guess = pose_from(exp_so3(Vector3d(0.0, 0.0, match.T_a_b.yaw_rad)),
                               Vector3d(match.T_a_b.t_m.x(), match.T_a_b.t_m.y(), 0.0));
   Registration result = refined(a, field, b, guess, config);

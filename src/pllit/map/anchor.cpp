@@ -5,25 +5,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "pllit/base/robust.hpp"
+
 namespace pllit {
 namespace {
-
-/// Where a value lies between knots: weight 1 - s on `left`, s on the one behind it.
-struct OnKnots {
-  std::size_t left;
-  double s;
-};
-
-OnKnots on_knots(const std::vector<double>& knots, double value) {
-  const auto after = std::ranges::upper_bound(knots, value) - knots.begin();
-  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after, 1, std::ssize(knots) - 1));
-  return {i - 1, std::clamp((value - knots[i - 1]) / (knots[i] - knots[i - 1]), 0.0, 1.0)};
-}
-
-double biweight(double residual, double width) {
-  const double u = residual / width;
-  return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
-}
 
 /// Value below which a share of them lies.
 double quantile(std::vector<float> values, double share) {
@@ -75,7 +60,7 @@ View line_round(std::span<const AnchorPair> pairs, const AnchorCurve& last, doub
   double w_sum = 0.0, n = 0.0, d = 0.0, squares = 0.0;
   std::vector<double> weights;
   for (const AnchorPair& pair : pairs) {
-    const double r = pair.normal - last(pair.now), w = pair.weight * biweight(r, width);
+    const double r = pair.normal - last(pair.now), w = pair.weight * tukey_weight(r, width);
     weights.push_back(w);
     w_sum += w;
     n += w * pair.normal;
@@ -110,7 +95,7 @@ void bend(std::span<const AnchorPair> pairs, const AnchorCurve& last, double wid
   Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
   double total = 0.0;
   for (const AnchorPair& pair : pairs) {
-    const double w = pair.weight * biweight(pair.normal - last(pair.now), width);
+    const double w = pair.weight * tukey_weight(pair.normal - last(pair.now), width);
     if (w <= 0.0) continue;
     const auto [left, s] = on_knots(view.knots, pair.normal);
     const auto i = static_cast<Eigen::Index>(left);
@@ -150,7 +135,7 @@ double lens_left(std::span<const AnchorPair> pairs, const AnchorCurve& curve, do
   constexpr double kLensChange = 3.0;  // from image to image, one sigma
   double w_sum = 0.0, q = 0.0, r_sum = 0.0, squares = 0.0, qq = 0.0, qr = 0.0;
   for (const AnchorPair& pair : pairs) {
-    const double difference = curve(pair.now) - pair.normal, w = pair.weight * biweight(difference, width);
+    const double difference = curve(pair.now) - pair.normal, w = pair.weight * tukey_weight(difference, width);
     const double r = difference / curve.gain;
     w_sum += w;
     q += w * pair.radius2;
@@ -213,15 +198,6 @@ double AnchorCurve::operator()(double intensity, double radius2) const {
   return value + (1.0 - s) * offsets[left] + s * offsets[left + 1];
 }
 
-namespace {
-
-float sample_variance(const ThermalVoxel& voxel, const VoxelModelConfig& model) {
-  if (voxel.learned(model)) return voxel.squares;
-  return voxel.squares / static_cast<float>(std::max(1u, voxel.images - 1));
-}
-
-}  // namespace
-
 std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<SurfaceObservation>& observations,
                                      const Camera& camera) {
   constexpr std::uint32_t kFewest = 3;
@@ -233,7 +209,7 @@ std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<Su
     pairs.push_back({.now = observation.intensity,
                      .normal = voxel->mean,
                      .radius2 = static_cast<float>(squared_radius(observation.pixel_px, camera)),
-                     .normal_variance = sample_variance(*voxel, map.config().model) / static_cast<float>(voxel->images),
+                     .normal_variance = voxel->variance(map.config().model) / static_cast<float>(voxel->images),
                      .weight = std::min(static_cast<float>(voxel->images), learned_after) / learned_after});
   }
   return pairs;

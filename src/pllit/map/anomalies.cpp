@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pllit/geometry/voxel_neighbours.hpp"
+
 namespace pllit {
 namespace {
 
@@ -99,27 +101,15 @@ std::vector<Anomaly> AnomalyDetector::anomalies() const {
 }
 
 std::vector<AnomalyDetector::Cluster> AnomalyDetector::clusters(const ThermalMap& map) const {
-  std::map<VoxelKey, std::vector<VoxelKey>> cells;
+  std::map<VoxelKey, Cluster> cells;
   for (const auto& [key, watched] : watch_)
     if (watched.hot && watched.hits >= map.config().model.hits)
       cells[voxel_key(cell_of(watched, config_.join_m))].push_back(key);
   std::vector<Cluster> clusters;
-  while (!cells.empty()) {
-    Cluster cluster;
-    std::vector<VoxelKey> open{cells.begin()->first};
-    while (!open.empty()) {
-      const VoxelKey cell = open.back();
-      open.pop_back();
-      const auto node = cells.extract(cell);
-      if (node.empty()) continue;
-      cluster.insert(cluster.end(), node.mapped().begin(), node.mapped().end());
-      for (int i = 0; i < 27; ++i) {
-        const VoxelKey next = voxel_key(voxel_of_key(cell) + Eigen::Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-        if (cells.contains(next)) open.push_back(next);
-      }
-    }
+  for (const auto& group : connected(std::move(cells), [](const Cluster&, const Cluster&) { return true; })) {
+    Cluster& cluster = clusters.emplace_back();
+    for (const Cluster& part : group) cluster.insert(cluster.end(), part.begin(), part.end());
     std::ranges::sort(cluster);
-    clusters.push_back(std::move(cluster));
   }
   return clusters;
 }

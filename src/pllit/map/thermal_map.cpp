@@ -15,7 +15,6 @@ VoxelSample sample_of(const ThermalView& view, const Vector3d& centre_W,
   VoxelSample sample{.time = view.time,
                      .viewpoint_W = view.viewpoint_W.cast<float>(),
                      .offset_m = Vector3f::Zero(),
-                     .sigma = static_cast<float>(view.calibration_sigma),
                      .points = static_cast<int>(members.size())};
   for (const auto& [key, index] : members) {
     const SurfaceObservation& observation = view.observations[index];

@@ -23,7 +23,6 @@ struct ThermalMapConfig {
 struct ThermalView {
   Time time;
   Vector3d viewpoint_W = Vector3d::Zero();
-  double calibration_sigma = 0.0;  ///< of the image as a whole, in the map's unit
   std::vector<SurfaceObservation> observations{};
 };
 
@@ -38,7 +37,6 @@ class ThermalMap {
   PointTable trim();
   /// What was known of a surface that is no longer there says nothing about the next one in its place.
   void forget(const Vector3d& p_W);
-  void clear() { voxels_.clear(); }
 
   const ThermalVoxel* find(VoxelKey key) const { return voxels_.find(key); }
   /// Voxel that a point lies in.

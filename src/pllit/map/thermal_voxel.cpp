@@ -48,7 +48,7 @@ void remember_calm(ThermalVoxel& voxel) {
 
 void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfig& config) {
   const float d = sample.intensity - voxel.mean;
-  const float sigma = std::hypot(voxel.sigma(config), sample.sigma);
+  const float sigma = voxel.sigma(config);
   const float gate = static_cast<float>(config.gate_sigmas) * sigma;
   const float limit = std::max(gate, static_cast<float>(config.min_change));
   const bool changed = voxel.hot ? d > static_cast<float>(config.release_sigmas) * sigma : std::abs(d) > limit;
@@ -64,9 +64,12 @@ void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfi
 
 }  // namespace
 
+float ThermalVoxel::variance(const VoxelModelConfig& config) const {
+  return learned(config) ? squares : images > 1 ? squares / static_cast<float>(images - 1) : 0.0F;
+}
+
 float ThermalVoxel::sigma(const VoxelModelConfig& config) const {
-  const float variance = learned(config) ? squares : images > 1 ? squares / static_cast<float>(images - 1) : 0.0F;
-  return std::max(static_cast<float>(config.noise), std::sqrt(variance));
+  return std::max(static_cast<float>(config.noise), std::sqrt(variance(config)));
 }
 
 ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelModelConfig& config) {

@@ -25,7 +25,6 @@ struct VoxelSample {
   Vector3f viewpoint_W;
   Vector3f offset_m;  ///< mean of the points from the voxel's centre
   float intensity = 0.0F, raw = 0.0F;
-  float sigma = 0.0F;  ///< of the image's calibration, common to all voxels
   int points = 1;
 };
 
@@ -50,6 +49,8 @@ struct ThermalVoxel {
     const auto enough = static_cast<std::uint32_t>(config.learned_after);
     return images >= (views >= config.learned_views ? enough : 5 * enough);
   }
+  /// Of the images that were normal.
+  float variance(const VoxelModelConfig& config) const;
   /// Standard deviation of what is normal, at least the configured noise.
   float sigma(const VoxelModelConfig& config) const;
   /// What is to be expected now: the short-term mean while something has changed, else the normal one.

@@ -6,7 +6,8 @@
 #include <map>
 #include <set>
 
-#include "pllit/geometry/voxel_table.hpp"
+#include "pllit/geometry/voxel_neighbours.hpp"
+#include "pllit/map/surroundings.hpp"
 
 namespace pllit {
 namespace {
@@ -23,13 +24,9 @@ struct Known {
 };
 using Voxels = std::map<VoxelKey, Known>;
 
-const std::vector<float>* field(const PointTable& table, std::string_view name) {
-  const auto found = std::ranges::find(table.fields, name, &ScalarField::name);
-  return found == table.fields.end() ? nullptr : &found->values;
-}
-
 Voxels voxels_of(const PointTable& table, std::string_view value, const VisitChangesConfig& config) {
-  const auto *values = field(table, value), *images = field(table, "images"), *sigmas = field(table, "sigma");
+  const auto *values = find_field(table, value), *images = find_field(table, "images"),
+             *sigmas = find_field(table, "sigma");
   Voxels voxels;
   if (!values || !images || !sigmas) return voxels;
   for (std::size_t i = 0; i < table.points.size(); ++i) {
@@ -41,14 +38,6 @@ Voxels voxels_of(const PointTable& table, std::string_view value, const VisitCha
     ++known.points;
   }
   return voxels;
-}
-
-template <class Visit>
-void for_neighbours(VoxelKey key, int reach, const Visit& visit) {
-  const Eigen::Vector3i centre = voxel_of_key(key);
-  for (int x = -reach; x <= reach; ++x)
-    for (int y = -reach; y <= reach; ++y)
-      for (int z = -reach; z <= reach; ++z) visit(voxel_key(centre + Eigen::Vector3i(x, y, z)));
 }
 
 AnchorFit drift_between(const Voxels& before, const Voxels& now, const VisitChangesConfig& config) {
@@ -100,11 +89,10 @@ void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& 
     for_neighbours(key, reach, [&](VoxelKey next) {
       if (const auto past = before.find(next); past != before.end()) around.push_back(past->second.mean());
     });
-    if (around.size() < 12) continue;
-    std::ranges::sort(around);
-    const auto at = [&](double share) { return around[static_cast<std::size_t>(share * double(around.size() - 1))]; };
-    const double change = result.drift.curve(seen.mean()) - at(0.75);
-    const double sigma = std::hypot((at(0.75) - at(0.25)) / 1.349, result.drift.rms, std::sqrt(seen.mean_variance()));
+    const auto surroundings = surroundings_of(std::move(around));
+    if (!surroundings) continue;
+    const double change = result.drift.curve(seen.mean()) - surroundings->upper;
+    const double sigma = std::hypot(surroundings->spread, result.drift.rms, std::sqrt(seen.mean_variance()));
     if (change > std::max(config.min_change, config.gate_sigmas * sigma))
       changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma});
   }
@@ -124,24 +112,12 @@ VisitChange summed(const std::vector<Changed>& cluster) {
   return change;
 }
 
-/// Changed voxels of one kind that hang together.
+/// Changed voxels of one kind that hang together, the greatest first.
 std::vector<VisitChange> clusters(std::map<VoxelKey, Changed> changed, int min_voxels) {
+  const auto same_kind = [](const Changed& a, const Changed& b) { return a.kind == b.kind; };
   std::vector<VisitChange> found;
-  while (!changed.empty()) {
-    std::vector<VoxelKey> open{changed.begin()->first};
-    const VisitChangeKind kind = changed.begin()->second.kind;
-    std::vector<Changed> cluster;
-    while (!open.empty()) {
-      const VoxelKey key = open.back();
-      open.pop_back();
-      const auto node = changed.find(key);
-      if (node == changed.end() || node->second.kind != kind) continue;
-      cluster.push_back(node->second);
-      changed.erase(node);
-      for_neighbours(key, 1, [&](VoxelKey next) { open.push_back(next); });
-    }
+  for (const auto& cluster : connected(std::move(changed), same_kind))
     if (static_cast<int>(cluster.size()) >= min_voxels) found.push_back(summed(cluster));
-  }
   std::ranges::stable_sort(found, std::greater{}, [](const VisitChange& c) { return std::abs(c.mean_sigmas); });
   return found;
 }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "pllit/geometry/voxel_neighbours.hpp"
+#include "pllit/map/surroundings.hpp"
+
 namespace pllit {
 namespace {
 
@@ -12,14 +15,10 @@ template <class Visit>
 void for_older_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey key, int reach, Time before,
                           const Visit& visit) {
   constexpr std::uint32_t kFewest = 3;  // images
-  const Eigen::Vector3i centre = voxel_of_key(key);
-  for (int x = -reach; x <= reach; ++x)
-    for (int y = -reach; y <= reach; ++y)
-      for (int z = -reach; z <= reach; ++z) {
-        const VoxelKey next = voxel_key(centre + Eigen::Vector3i(x, y, z));
-        const ThermalVoxel* voxel = next == key ? nullptr : map.find(next);
-        if (voxel && voxel->first_seen < before && voxel->images >= kFewest && !watch.contains(next)) visit(*voxel);
-      }
+  for_neighbours(key, reach, [&](VoxelKey next) {
+    const ThermalVoxel* voxel = next == key ? nullptr : map.find(next);
+    if (voxel && voxel->first_seen < before && voxel->images >= kFewest && !watch.contains(next)) visit(*voxel);
+  });
 }
 
 /// Whether something next to it has always been nearly as hot: calibration is good to a few pixels only.
@@ -37,17 +36,16 @@ struct Normal {
   float value, sigma;
 };
 
-/// Upper quartile of the older surfaces around, and their spread; nothing where there are too few.
+/// By the older surfaces around; nothing where there are too few.
 std::optional<Normal> surroundings(const ThermalMap& map, const Watch& watch, VoxelKey key, Time before,
                                    const WatchConfig& config) {
-  std::vector<float> values;
+  std::vector<double> values;
   for_older_neighbours(map, watch, key, config.surround_voxels, before,
-                       [&](const ThermalVoxel& voxel) { values.push_back(voxel.mean); });
-  if (values.size() < 12) return std::nullopt;
-  std::ranges::sort(values);
-  const auto at = [&](double share) { return values[static_cast<std::size_t>(share * double(values.size() - 1))]; };
-  const float spread = (at(0.75) - at(0.25)) / 1.349F;
-  return Normal{at(0.75), std::max(static_cast<float>(map.config().model.noise), spread)};
+                       [&](const ThermalVoxel& voxel) { values.push_back(static_cast<double>(voxel.mean)); });
+  const auto around = surroundings_of(std::move(values));
+  if (!around) return std::nullopt;
+  return Normal{static_cast<float>(around->upper),
+                static_cast<float>(std::max(map.config().model.noise, around->spread))};
 }
 
 /// What a voxel that is no older than the heat in it should be, where that can be told.
@@ -97,14 +95,14 @@ void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const 
 
 /// A watched voxel next to one, of which it may be a part.
 const WatchedVoxel* hot_neighbour(const Watch& watch, VoxelKey key, float value, const VoxelModelConfig& model) {
-  const Eigen::Vector3i centre = voxel_of_key(key);
-  for (int i = 0; i < 27; ++i) {
-    const auto found = watch.find(voxel_key(centre + Eigen::Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
-    if (found == watch.end() || !found->second.hot) continue;
+  const WatchedVoxel* part = nullptr;
+  for_neighbours(key, 1, [&](VoxelKey next) {
+    const auto found = part ? watch.end() : watch.find(next);
+    if (found == watch.end() || !found->second.hot) return;
     const float change = value - found->second.normal;
-    if (change > static_cast<float>(model.min_change) && change > 0.5F * found->second.change) return &found->second;
-  }
-  return nullptr;
+    if (change > static_cast<float>(model.min_change) && change > 0.5F * found->second.change) part = &found->second;
+  });
+  return part;
 }
 
 /// A voxel that was not there before.

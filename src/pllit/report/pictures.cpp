@@ -101,12 +101,11 @@ cv::Mat plan_of(const PointTable& map, const Trajectory& trajectory, std::span<c
                 const PlanConfig& config) {
   if (map.points.empty()) return {};
   Plan plan = plan_for(map, trajectory, config);
-  const auto field = std::ranges::find(map.fields, "intensity", &ScalarField::name);
-  const bool measured = field != map.fields.end();
-  const auto [level, seen] = levels(map, measured ? field->values : std::vector<float>(map.points.size(), 1.0F), plan);
+  const std::vector<float>* intensity = find_field(map, "intensity");
+  const auto [level, seen] = levels(map, intensity ? *intensity : std::vector<float>(map.points.size(), 1.0F), plan);
   cv::Mat coloured, picture(plan.size(), CV_8UC3, cv::Scalar::all(28));
   cv::applyColorMap(level, coloured, cv::COLORMAP_INFERNO);
-  if (!measured) coloured = cv::Scalar::all(140);
+  if (!intensity) coloured = cv::Scalar::all(140);
   coloured.copyTo(picture, seen);
   const int before_px = picture.cols;
   picture = enlarged(picture, config.width_px);

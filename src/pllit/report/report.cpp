@@ -110,11 +110,11 @@ std::string card(const Anomaly& a, const ReportContent& content) {
 std::string coverage(const ReportContent& content) {
   if (!content.has_images) return "";
   const double area_m2 = static_cast<double>(content.thermal_map.points.size()) * content.voxel_m * content.voxel_m;
-  const auto images = std::ranges::find(content.thermal_map.fields, "images", &ScalarField::name);
+  const std::vector<float>* images = find_field(content.thermal_map, "images");
   std::size_t known = 0;
-  constexpr float kKnownAfter = 12.0F;
-  if (images != content.thermal_map.fields.end())
-    known = static_cast<std::size_t>(std::ranges::count_if(images->values, [](float n) { return n >= kKnownAfter; }));
+  const auto known_after = static_cast<float>(content.known_after);
+  if (images)
+    known = static_cast<std::size_t>(std::ranges::count_if(*images, [&](float n) { return n >= known_after; }));
   const double share =
       content.thermal_map.points.empty() ? 0.0 : 100.0 * double(known) / double(content.thermal_map.points.size());
   return std::format(

@@ -13,7 +13,7 @@
 
 namespace pllit {
 
-/// A stretch of frames that were not good, for the same reasons.
+/// A stretch of frames in one state that is not good, with the reasons of the first.
 struct DoubtfulStretch {
   double from_s = 0.0, to_s = 0.0;  ///< since 1970
   std::string state, reasons;
@@ -24,6 +24,7 @@ struct ReportContent {
   std::string title;
   IntensityUnit unit = IntensityUnit::grey;
   double voxel_m = 0.05;  ///< of the thermographic map
+  int known_after = 12;   ///< images of a surface before it is known what is normal there
   bool has_images = false;
   Trajectory trajectory{};
   PointTable map{};          ///< of the LiDAR

@@ -2,19 +2,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pllit/geometry/lie_json.hpp"
 #include "pllit/sim/simulation.hpp"
 
 namespace pllit {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-Json pose_json(const SE3& pose) {
-  const Eigen::Quaterniond q = pose.quat();
-  return {{"translation_m", vector_json(pose.translation())}, {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
-}
 
 Json camera_json(const Camera& camera) { return {camera.fx, camera.fy, camera.cx, camera.cy}; }
 

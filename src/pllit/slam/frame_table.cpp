@@ -1,6 +1,7 @@
 #include "pllit/slam/frame_table.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -97,12 +98,13 @@ std::vector<FrameCell> loop_row(const LoopRecord& record) {
 
 void move_points(PointTable& points, std::string_view field, Time start, const Correction& correction,
                  const Trajectory& odometry) {
-  const auto times = std::ranges::find(points.fields, field, &ScalarField::name);
-  if (odometry.empty() || times == points.fields.end()) return;
+  const std::vector<float>* times = find_field(points, field);
+  assert(times);
+  if (odometry.empty()) return;
   std::size_t frame = odometry.size();  // none yet
   SE3 T_M_O;
   for (std::size_t i = 0; i < points.points.size(); ++i) {
-    const Time time = start + from_seconds(times->values[i]);
+    const Time time = start + from_seconds((*times)[i]);
     const auto after = std::ranges::lower_bound(odometry, time - std::chrono::milliseconds(5), {}, &StampedPose::time);
     const auto own = static_cast<std::size_t>(std::min(after, odometry.end() - 1) - odometry.begin());
     if (own != frame) {
@@ -116,11 +118,7 @@ void move_points(PointTable& points, std::string_view field, Time start, const C
 PointTable MapRecorder::new_points(const FrameEstimate& frame) {
   if (!first_) first_ = frame.posterior.mean.time;
   const auto seconds = static_cast<float>(to_seconds(frame.posterior.mean.time - *first_));
-  const Matrix3d R = frame.posterior.mean.R_W_I.rotation();
-  std::vector<Vector3f> points_W;
-  points_W.reserve(frame.cloud.points_I.size());
-  for (const Vector3f& p_I : frame.cloud.points_I)
-    points_W.push_back((R * p_I.cast<double>() + frame.posterior.mean.p_W).cast<float>());
+  const std::vector<Vector3f> points_W = frame.points_W();
 
   PointTable table{.points = {}, .fields = {{"intensity", {}}, {"time", {}}}};
   if (frame.health.state == HealthState::lost ||

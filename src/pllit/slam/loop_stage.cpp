@@ -7,10 +7,6 @@ namespace {
 
 constexpr std::size_t kMostWaiting = 20;  // frames
 
-double ms_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
-
 }  // namespace
 
 LoopStage::LoopStage(const LoopConfig& config)
@@ -54,7 +50,7 @@ void LoopStage::take_in(const FrameEstimate& frame) try {
   if (!stopped_.empty()) return;
   const auto begin = std::chrono::steady_clock::now();
   if (auto keyframe = maker_.take(frame)) closer_.add(std::move(*keyframe));
-  frame_ms_.add(ms_since(begin));
+  frame_ms_.add(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
 } catch (const std::exception& problem) {  // the solver's: a graph it cannot solve must not end the odometry
   stopped_ = problem.what();
 }
@@ -62,21 +58,14 @@ void LoopStage::take_in(const FrameEstimate& frame) try {
 LoopResult LoopStage::finish() {
   close_queue();
   thread_.join();
-  const auto begin = std::chrono::steady_clock::now();
   if (stopped_.empty()) try {
       closer_.finish();
     } catch (const std::exception& problem) {
       stopped_ = problem.what();
     }
-  LoopResult result{.records = closer_.records(),
-                    .accepted = closer_.accepted(),
-                    .keyframes = static_cast<int>(closer_.keyframes().size()),
-                    .odometry_factor = closer_.odometry_factor(),
-                    .bytes = closer_.bytes(),
-                    .frame_ms = frame_ms_,
-                    .stopped = stopped_};
-  if (result.accepted > 0 && stopped_.empty()) result.correction = correction();
-  result.finish_ms = ms_since(begin);
+  LoopResult result{
+      .records = closer_.records(), .accepted = closer_.accepted(), .frame_ms = frame_ms_, .stopped = stopped_};
+  if (result.closed()) result.correction = correction();
   return result;
 }
 

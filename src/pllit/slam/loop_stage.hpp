@@ -19,12 +19,11 @@ struct LoopResult {
   Correction correction{{}};  ///< changes nothing where no loop was closed
   std::vector<LoopRecord> records{};
   int accepted = 0;
-  int keyframes = 0;
-  double odometry_factor = 1.0;  ///< see LoopCloser
-  std::size_t bytes = 0;         ///< of keyframes and descriptors
-  Distribution frame_ms{};       ///< time on its thread for each frame
-  std::string stopped{};         ///< why it ended early, which leaves the odometry as it was; empty if it did not
-  double finish_ms = 0.0;
+  Distribution frame_ms{};  ///< time on its thread for each frame
+  std::string stopped{};    ///< why it ended early, which leaves the odometry as it was; empty if it did not
+
+  /// Whether anything was moved.
+  bool closed() const { return accepted > 0 && stopped.empty(); }
 };
 
 /// Frames wait in a short queue; where the thread falls behind, take() waits for it. The odometry stays smooth in its

@@ -260,6 +260,15 @@ std::vector<ImuSample> Odometry::in_si_units(std::vector<ImuSample> imu) const {
   return imu;
 }
 
+std::vector<Vector3f> FrameEstimate::points_W() const {
+  const Matrix3d R = posterior.mean.R_W_I.rotation();
+  std::vector<Vector3f> points_W;
+  points_W.reserve(cloud.points_I.size());
+  for (const Vector3f& p_I : cloud.points_I)
+    points_W.push_back((R * p_I.cast<double>() + posterior.mean.p_W).cast<float>());
+  return points_W;
+}
+
 Matrix6 relative_pose_covariance(const FrameEstimate& a, const FrameEstimate& b) {
   const Vector3d displacement_W = b.posterior.mean.p_W - a.posterior.mean.p_W;
   return b.drift_covariance - carried(a.drift_covariance, displacement_W) + pose_covariance_W(b.posterior) +

@@ -26,6 +26,8 @@ struct FrameEstimate {
   SE3 T_I_C = SE3::Identity();                      ///< ... and the camera's pose on the rig, as refined so far
   StageTimes stage_ms{};
 
+  /// The cloud's points in W.
+  std::vector<Vector3f> points_W() const;
   /// Covariance of (theta, p) in W against the origin.
   Matrix6 pose_covariance() const { return drift_covariance + pose_covariance_W(posterior); }
 };

@@ -47,15 +47,12 @@ std::optional<ThermographyInput> thermography_input(const FrameEstimate& frame, 
   const cv::Mat& counts = frame.image->counts;
   if (counts.cols != rig.camera->width || counts.rows != rig.camera->height || counts.channels() != 1)
     return std::nullopt;
-  const SE3 T_W_I = frame.posterior.mean.T_W_I();
-  ThermographyInput input{.time = frame.posterior.mean.time,
-                          .T_W_C = T_W_I * frame.T_I_C,
-                          .raw = counts,
-                          .planes = &planes,
-                          .trusted = frame.health.state == HealthState::good};
-  for (const Vector3f& p_I : frame.cloud.points_I)
-    input.points_W.push_back(T_W_I.act(p_I.cast<double>()).cast<float>());
-  return input;
+  return ThermographyInput{.time = frame.posterior.mean.time,
+                           .T_W_C = frame.posterior.mean.T_W_I() * frame.T_I_C,
+                           .raw = counts,
+                           .points_W = frame.points_W(),
+                           .planes = &planes,
+                           .trusted = frame.health.state == HealthState::good};
 }
 
 Thermography::Thermography(const Camera& camera, const ThermographyConfig& config)

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pllit {
@@ -18,5 +20,11 @@ struct PointTable {
   std::vector<Eigen::Vector3f> points;
   std::vector<ScalarField> fields;
 };
+
+/// The values of a field; null where the table has none of that name.
+inline const std::vector<float>* find_field(const PointTable& table, std::string_view name) {
+  const auto found = std::ranges::find(table.fields, name, &ScalarField::name);
+  return found == table.fields.end() ? nullptr : &found->values;
+}
 
 }  // namespace pllit

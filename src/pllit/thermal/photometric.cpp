@@ -7,27 +7,12 @@
 #include <cstdint>
 #include <iterator>
 
+#include "pllit/base/robust.hpp"
+
 namespace pllit {
 namespace {
 
 constexpr std::array<double, 6> kLossWidths{60.0, 40.0, 25.0, 16.0, 1.0, 1.0};  // grey; at least the configured one
-
-double tukey_weight(double residual, double width) {
-  const double u = residual / width;
-  return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
-}
-
-/// Where a grey lies between knots: weight 1 - s on `left`, s on the one behind it; at an end for greys beyond it.
-struct OnKnots {
-  std::size_t left;
-  double s;
-};
-
-OnKnots on_knots(const std::vector<double>& knots, double raw) {
-  const auto after = std::ranges::upper_bound(knots, raw) - knots.begin();
-  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after, 1, std::ssize(knots) - 1));
-  return {i - 1, std::clamp((raw - knots[i - 1]) / (knots[i] - knots[i - 1]), 0.0, 1.0)};
-}
 
 struct Residuals {
   int inliers = 0;
