@@ -76,7 +76,7 @@ Expected<Json> compared(const Visit& baseline, const std::string& folder) {
 std::string text_of(const Json& visit) {
   const int shared = visit["voxels"]["shared"], missed = visit["voxels"]["not_seen_again"];
   std::string text =
-      std::format("{}\n  found its place: {} registrations from {} places agree, {:.0f} mm across surfaces\n",
+      std::format("{}\n  found its place: {} of {} places agree, {:.0f} mm across surfaces\n",
                   visit["session"].get<std::string>(), visit["relocalisation"]["agreeing"].get<int>(),
                   visit["relocalisation"]["places"].get<int>(), 1e3 * visit["relocalisation"]["rmse_m"].get<double>());
   text += std::format("  seen again: {:.0f} % of the baseline's surfaces ({} voxels)\n",

@@ -178,7 +178,22 @@ TEST(Thermography, FindsAKnownSurfaceThatHeatsUp) {
   watched.until(60.0);
   ASSERT_EQ(watched.alarms().size(), 1u);
   EXPECT_EQ(watched.alarms()[0].state, AnomalyState::confirmed);
-  EXPECT_FALSE(watched.stage.anomaly_points().points.empty());
+}
+
+TEST(Thermography, TellsWhenEachHotPointWasLastSeenSoThatLoopsCanMoveIt) {
+  Watched watched{.world = room()};
+  watched.world.boxes.push_back(on_table(90.0));
+  watched.world.boxes.back().grey = [](double t_s) { return t_s > 12.0 ? 150.0 : 90.0; };
+  watched.until(18.0);
+  const PointTable points = watched.stage.anomaly_points();
+  ASSERT_FALSE(points.points.empty());
+  const std::vector<float>* seen_s = find_field(points, "seen_s");
+  ASSERT_TRUE(seen_s);
+  ASSERT_EQ(seen_s->size(), points.points.size());
+  for (const float s : *seen_s) {
+    EXPECT_GT(s, 12.0F);
+    EXPECT_LE(s, static_cast<float>(watched.t_s));
+  }
 }
 
 TEST(Thermography, FindsAHotThingThatWasBroughtIn) {

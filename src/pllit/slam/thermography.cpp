@@ -148,7 +148,7 @@ bool Thermography::tie_to_map(const std::vector<SurfaceObservation>& observation
 }
 
 PointTable Thermography::anomaly_points() const {
-  PointTable table{.points = {}, .fields = {{"id", {}}, {"change", {}}, {"change_sigmas", {}}}};
+  PointTable table{.points = {}, .fields = {{"id", {}}, {"change", {}}, {"change_sigmas", {}}, {"seen_s", {}}}};
   std::vector<std::uint32_t> alarms;
   for (const Anomaly& anomaly : detector_.anomalies())
     if (anomaly.confirmed) alarms.push_back(anomaly.id);
@@ -158,6 +158,7 @@ PointTable Thermography::anomaly_points() const {
     table.fields[0].values.push_back(static_cast<float>(watched.owner));
     table.fields[1].values.push_back(watched.peak);
     table.fields[2].values.push_back(watched.peak / watched.sigma);
+    table.fields[3].values.push_back(static_cast<float>(to_seconds(watched.last - map_.start().value_or(Time{}))));
   }
   return table;
 }

@@ -50,8 +50,8 @@ class Thermography {
 
   const ThermalMap& map() const { return map_; }
   std::vector<Anomaly> anomalies() const { return detector_.anomalies(); }
-  /// The hot points of all anomalies that are or were alarms, with fields `id`, `change` and `change_sigmas`: what the
-  /// paper marks red.
+  /// The hot points of all anomalies that are or were alarms, what the paper marks red, with fields `id`, `change`,
+  /// `change_sigmas` and `seen_s` (last seen hot, since the map's start).
   PointTable anomaly_points() const;
   /// Of each anomaly the part of an image in which it is largest (Anomaly::crop), as the camera gave it.
   const std::map<std::uint32_t, cv::Mat>& crops() const { return crops_; }
