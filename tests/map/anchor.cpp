@@ -55,6 +55,34 @@ TEST(AnchorCurve, IsNotDraggedByAThirdOfTheImageThatHasBecomeHot) {
   }
 }
 
+TEST(AnchorCurve, IsDoubtedBeyondWhatKnownSurfacesShow) {
+  Random random(6);
+  const AnchorFit fit = anchor_curve(scene(random, 3000, 0.1, bent), {}, {});
+  ASSERT_TRUE(fit.holds);
+  EXPECT_EQ(fit.curve.doubt(bent(60.0)), 0.0);
+  EXPECT_EQ(fit.curve.doubt(bent(160.0)), 0.0);
+  const double error = std::abs(fit.curve(bent(300.0)) - 300.0), doubt = fit.curve.doubt(bent(300.0));
+  EXPECT_GT(doubt, error / 3.0);
+  EXPECT_LT(3.0 * doubt, fit.curve(bent(300.0)) - 180.0) << "what is so much hotter must still count as hot";
+}
+
+TEST(AnchorCurve, IsNotHeldByWhatWasItselfLearnedInDoubt) {
+  Random random(7);
+  std::vector<AnchorPair> pairs = scene(random, 3000, 0.0, bent);
+  for (AnchorPair& pair : pairs)
+    if (pair.normal > 120.0F) pair.trust = 1e-3F;
+  EXPECT_GT(anchor_curve(pairs, {}, {}).curve.doubt(bent(170.0)), 5.0);
+}
+
+TEST(AnchorCurve, SaysHowWellTheWholeImageFits) {
+  for (const double noise : {2.0, 15.0}) {
+    Random random(8);
+    std::vector<AnchorPair> pairs = scene(random, 3000, 0.0, +[](double normal) { return normal; });
+    for (AnchorPair& pair : pairs) pair.now += static_cast<float>(random.normal(noise));
+    EXPECT_NEAR(anchor_curve(pairs, {}, {}).spread, std::hypot(noise, 2.1), 0.25 * noise);
+  }
+}
+
 TEST(AnchorCurve, Increases) {
   Random random(4);
   for (int round = 0; round < 20; ++round) {

@@ -18,13 +18,16 @@ struct Shown {
   ThermalVoxel voxel{};
   Time time{};
 
-  void operator()(double intensity) {
+  void operator()(double intensity, double saturated = 0.0, double spread = 0.0, double doubt = 0.0) {
     time += std::chrono::milliseconds(100);
     voxel = seen(voxel,
                  {.time = time,
                   .viewpoint_W = Vector3f(static_cast<float>(0.1 * to_seconds(time)), 0.0F, 0.0F),
                   .offset_m = Vector3f::Zero(),
-                  .intensity = static_cast<float>(intensity)},
+                  .intensity = static_cast<float>(intensity),
+                  .doubt = static_cast<float>(doubt),
+                  .saturated = static_cast<float>(saturated),
+                  .spread = static_cast<float>(spread)},
                  config);
   }
   void noisy(Random& random, double mean, double sigma, int images) {
@@ -88,6 +91,46 @@ TEST(ThermalVoxel, CallsHotOnlyWhatSeveralImagesShow) {
   EXPECT_FALSE(shown.voxel.hot);
   shown(160.0);
   EXPECT_TRUE(shown.voxel.hot);
+}
+
+TEST(ThermalVoxel, IsKnownFromAFewImagesOnceTheRigHasGoneByAndComesBack) {
+  for (const double pause_s : {0.0, 30.0}) {
+    Shown shown{.config = {.noise = 4.0, .learned_views = 1, .min_change = 20.0}, .voxel = {}};
+    for (int i = 0; i < 5; ++i) shown(100.0);
+    EXPECT_FALSE(shown.voxel.learned(shown.config));
+    EXPECT_GT(shown.voxel.sigma(shown.config), 1.4 * shown.config.noise) << "five images tell less than twelve";
+    shown.time += from_seconds(pause_s);
+    for (int i = 0; i < 3; ++i) shown(150.0);
+    EXPECT_EQ(shown.voxel.hot, pause_s > 0.0);
+  }
+}
+
+TEST(ThermalVoxel, ThatWasLearnedFromSaturatedPixelsIsNotHotForBeingBrighter) {
+  for (const double saturated : {0.0, 1.0}) {
+    Shown shown;
+    for (int i = 0; i < 40; ++i) shown(200.0, saturated);
+    for (int i = 0; i < 10; ++i) shown(260.0);
+    EXPECT_EQ(shown.voxel.hot, saturated == 0.0);
+  }
+}
+
+TEST(ThermalVoxel, IsHotInSaturatedImagesToo) {
+  Shown shown;
+  for (int i = 0; i < 40; ++i) shown(100.0);
+  for (int i = 0; i < 3; ++i) shown(200.0, 1.0);
+  EXPECT_TRUE(shown.voxel.hot);
+}
+
+TEST(ThermalVoxel, IsNotHotWhereTheImageItselfOrItsCalibrationIsThatUncertain) {
+  Shown spread, doubt;
+  for (int i = 0; i < 40; ++i) spread(100.0), doubt(100.0);
+  for (int i = 0; i < 10; ++i) spread(140.0, 0.0, 15.0), doubt(140.0, 0.0, 0.0, 15.0);
+  EXPECT_FALSE(spread.voxel.hot);
+  EXPECT_FALSE(doubt.voxel.hot);
+  EXPECT_LT(spread.voxel.mean, 102.0F) << "nor may heat become normal through poor images";
+  for (int i = 0; i < 3; ++i) spread(160.0, 0.0, 15.0), doubt(160.0, 0.0, 0.0, 15.0);
+  EXPECT_TRUE(spread.voxel.hot);
+  EXPECT_TRUE(doubt.voxel.hot);
 }
 
 TEST(ThermalVoxel, NeverCallsColdHot) {

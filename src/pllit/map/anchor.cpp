@@ -167,6 +167,41 @@ AnchorCurve refined(std::span<const AnchorPair> pairs, AnchorCurve curve, const 
   return curve;
 }
 
+/// Notes between which intensities surfaces that are known without doubt hold the curve, but for a few at each end.
+void note_support(std::span<const AnchorPair> pairs, const AnchorConfig& config, AnchorCurve& curve) {
+  constexpr double kEnds = 0.01;
+  std::vector<std::pair<double, double>> agreeing;  // intensity without the lens, weight
+  double total = 0.0;
+  for (const AnchorPair& pair : pairs) {
+    if (std::abs(pair.normal - curve(pair.now, pair.radius2)) >= config.loss) continue;
+    const auto weight = static_cast<double>(pair.weight * pair.trust);
+    agreeing.emplace_back(pair.now - curve.lens * pair.radius2, weight);
+    total += weight;
+  }
+  if (agreeing.empty()) return;
+  std::ranges::sort(agreeing);
+  const auto end = [&](auto begin, auto stop) {
+    double sum = 0.0;
+    while (begin + 1 != stop && (sum += begin->second) < kEnds * total) ++begin;
+    return begin->first;
+  };
+  curve.low = end(agreeing.begin(), agreeing.end());
+  curve.high = end(agreeing.rbegin(), agreeing.rend());
+  using Shape = AnchorConfig::Shape;
+  curve.slope_doubt = config.shape == Shape::curve    ? config.curve_slope_doubt
+                      : config.shape == Shape::affine ? config.affine_slope_doubt
+                                                      : 0.0;
+}
+
+/// From the median of the residuals' sizes.
+double spread_about(std::span<const AnchorPair> pairs, const AnchorCurve& curve) {
+  constexpr double kGaussian = 1.4826;
+  std::vector<float> sizes;
+  for (const AnchorPair& pair : pairs)
+    sizes.push_back(static_cast<float>(std::abs(pair.normal - curve(pair.now, pair.radius2))));
+  return kGaussian * quantile(std::move(sizes), 0.5);
+}
+
 /// The shift that most pairs agree on.
 AnchorCurve shifted(std::span<const AnchorPair> pairs) {
   std::vector<float> differences;
@@ -198,6 +233,11 @@ double AnchorCurve::operator()(double intensity, double radius2) const {
   return value + (1.0 - s) * offsets[left] + s * offsets[left + 1];
 }
 
+double AnchorCurve::doubt(double intensity, double radius2) const {
+  intensity -= lens * radius2;
+  return slope_doubt * gain * std::max({0.0, low - intensity, intensity - high});
+}
+
 std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<SurfaceObservation>& observations,
                                      const Camera& camera) {
   constexpr std::uint32_t kFewest = 3;
@@ -206,11 +246,14 @@ std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<Su
   for (const SurfaceObservation& observation : observations) {
     const ThermalVoxel* voxel = map.find(map.key_at(observation.p_W));
     if (!voxel || voxel->images < kFewest || voxel->changes > 0) continue;
+    const float known = std::min(static_cast<float>(voxel->images), learned_after) / learned_after,
+                doubt = voxel->doubt / static_cast<float>(map.config().model.noise);
     pairs.push_back({.now = observation.intensity,
                      .normal = voxel->mean,
                      .radius2 = static_cast<float>(squared_radius(observation.pixel_px, camera)),
                      .normal_variance = voxel->variance(map.config().model) / static_cast<float>(voxel->images),
-                     .weight = std::min(static_cast<float>(voxel->images), learned_after) / learned_after});
+                     .weight = known,
+                     .trust = 1.0F / (1.0F + doubt * doubt)});
   }
   return pairs;
 }
@@ -232,9 +275,12 @@ AnchorFit anchor_curve(std::span<const AnchorPair> pairs, const AnchorCurve& bef
     ++fit.inliers;
     squares += r * r;
   }
+  fit.spread = spread_about(pairs, curve);
   fit.rms = fit.inliers > 0 ? std::sqrt(squares / fit.inliers) : 0.0;
   fit.holds = fit.inliers >= config.min_pairs && fit.inliers >= config.min_share * fit.pairs;
-  if (fit.holds) fit.curve = std::move(curve);
+  if (!fit.holds) return fit;
+  note_support(pairs, config, curve);
+  fit.curve = std::move(curve);
   return fit;
 }
 

@@ -2,6 +2,7 @@
 // neither the drift of a gain control nor that of the camera is taken for heat.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct AnchorPair {
   float radius2 = 0.0F;          ///< squared distance from the middle of the image, 1 in its corners
   float normal_variance = 0.0F;  ///< of the error of `normal`
   float weight = 1.0F;           ///< more for what is well known
+  float trust = 1.0F;            ///< less for what was itself learned in doubt: it may tie images to each other only
 };
 
 /// Intensities as they come to those of the map: a straight line, and where a gain control is not one, a polyline added
@@ -23,8 +25,13 @@ struct AnchorCurve {
   double gain = 1.0, bias = 0.0;
   double lens = 0.0;  ///< what the image has too much at the squared radius 1, before the rest: vignetting
   std::vector<double> knots{}, offsets{};  ///< ascending; none for a straight line; constant beyond the ends
+  /// Intensities, without the lens, between which known surfaces hold it.
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  double slope_doubt = 0.0;  ///< beyond them, one sigma, as a share of the slope
 
   double operator()(double intensity, double radius2 = 0.0) const;
+  /// One sigma of what it gives, beyond the spread of single surfaces: nothing between `low` and `high`.
+  double doubt(double intensity, double radius2 = 0.0) const;
 };
 
 struct AnchorConfig {
@@ -39,13 +46,17 @@ struct AnchorConfig {
   int min_pairs = 150;     ///< inliers, in voxels
   double min_share = 0.5;  ///< of the pairs that must be inliers
   int knots = 17;
+  /// How far the slope of a curve beyond what known surfaces show may be off, one sigma, as a share. A gain control
+  /// that equalises bends where it likes; a linear one is only as good as its slope.
+  double curve_slope_doubt = 0.3, affine_slope_doubt = 0.1;
 };
 
 struct AnchorFit {
   AnchorCurve curve{};
   int pairs = 0, inliers = 0;
-  double rms = 0.0;    ///< of the inliers' residuals, in the map's unit
-  bool holds = false;  ///< enough inliers; otherwise the curve is the one before
+  double rms = 0.0;     ///< of the inliers' residuals, in the map's unit
+  double spread = 0.0;  ///< standard deviation of all residuals, robust: how well this image shows what is known
+  bool holds = false;   ///< enough inliers; otherwise the curve is the one before
 };
 
 /// Pairs of an image's observations with voxels that have been seen a few times and that nothing has changed in.

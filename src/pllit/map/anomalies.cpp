@@ -85,7 +85,7 @@ void AnomalyDetector::update(const WatchInput& input, const ThermalView& view) {
   }
   for (auto& [id, track] : tracks_) {
     measure(track, view);
-    settle(track, view.time);
+    settle(track, view.time, input.map.config().model.min_change);
     if (track.anomaly.last_seen != view.time) continue;
     const auto crop = crop_of(watch_, id, view, input.map.config().voxel_m);
     std::optional<ImageCrop>& best = track.anomaly.crop;
@@ -172,12 +172,16 @@ void AnomalyDetector::measure(Track& track, const ThermalView& view) {
   anomaly.confidence = confidence(anomaly);
 }
 
-void AnomalyDetector::settle(Track& track, Time now) const {
+void AnomalyDetector::settle(Track& track, Time now, double least_change) const {
+  constexpr int kFewestSeeds = 2, kMostJoined = 5;  // one voxel's mistake must not take in a whole cabinet
   Anomaly& anomaly = track.anomaly;
   const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
   if (anomaly.state == AnomalyState::fresh) {
     const bool stays = members.left <= config_.max_leaving * members.all;
     if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
+    if (members.change < least_change * members.hot) return;
+    const int seeds = members.known + members.new_surfaces;
+    if (seeds < std::max(kFewestSeeds, members.hot / kMostJoined)) return;
     if (anomaly.views < config_.min_views && to_seconds(now - anomaly.first_seen) < config_.still_dwell_s) return;
     anomaly.state = AnomalyState::confirmed;
     anomaly.confirmed = now;

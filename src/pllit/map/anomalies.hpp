@@ -44,7 +44,7 @@ class AnomalyDetector {
   std::vector<Cluster> clusters(const ThermalMap& map) const;
   Track& owner_of(const Cluster& cluster, const ThermalView& view);
   void measure(Track& track, const ThermalView& view);
-  void settle(Track& track, Time now) const;
+  void settle(Track& track, Time now, double least_change) const;
   void drop_vanished(Time now);
 
   AnomalyConfig config_;

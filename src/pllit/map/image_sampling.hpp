@@ -15,6 +15,8 @@ struct SurfaceObservation {
   Vector3d p_W;                ///< m
   Eigen::Vector2f pixel_px;    ///< where it was read, distorted
   float intensity = 0.0F;      ///< calibrated, in the map's unit
+  float doubt = 0.0F;          ///< of the calibration there, one sigma, in the map's unit
+  bool saturated = false;      ///< at least so bright
   float raw = 0.0F;            ///< as the camera gave it, of the nearest pixel
   float cos_incidence = 1.0F;  ///< between ray and normal; 1 where the normal is not known
   float range_m = 0.0F;        ///< from the camera

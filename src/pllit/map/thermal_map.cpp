@@ -15,16 +15,21 @@ VoxelSample sample_of(const ThermalView& view, const Vector3d& centre_W,
   VoxelSample sample{.time = view.time,
                      .viewpoint_W = view.viewpoint_W.cast<float>(),
                      .offset_m = Vector3f::Zero(),
+                     .spread = static_cast<float>(view.spread),
                      .points = static_cast<int>(members.size())};
   for (const auto& [key, index] : members) {
     const SurfaceObservation& observation = view.observations[index];
     sample.intensity += observation.intensity;
     sample.raw += observation.raw;
+    sample.doubt += observation.doubt;
+    sample.saturated += observation.saturated ? 1.0F : 0.0F;
     sample.offset_m += (observation.p_W - centre_W).cast<float>();
   }
   const float share = 1.0F / static_cast<float>(members.size());
   sample.intensity *= share;
   sample.raw *= share;
+  sample.doubt *= share;
+  sample.saturated *= share;
   sample.offset_m *= share;
   return sample;
 }

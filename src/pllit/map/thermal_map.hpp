@@ -23,6 +23,7 @@ struct ThermalMapConfig {
 struct ThermalView {
   Time time;
   Vector3d viewpoint_W = Vector3d::Zero();
+  double spread = 0.0;  ///< of its intensities about what is known, one sigma, in the map's unit
   std::vector<SurfaceObservation> observations{};
 };
 

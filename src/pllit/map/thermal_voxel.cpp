@@ -13,19 +13,24 @@ constexpr std::uint8_t kCalmImages = 3;
 void settle(ThermalVoxel& voxel) { voxel.squares /= static_cast<float>(std::max(1u, voxel.images - 1)); }
 
 /// Welford's recursion until learned, then exponential.
-void learn(ThermalVoxel& voxel, float intensity, float weight_share, const VoxelModelConfig& config) {
-  const float d = intensity - voxel.mean;
+void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, const VoxelModelConfig& config) {
+  const float d = sample.intensity - voxel.mean;
+  const auto approach = [&](float weight) {
+    voxel.mean += weight * d;
+    voxel.doubt += weight * (sample.doubt - voxel.doubt);
+    voxel.saturated += weight * (sample.saturated - voxel.saturated);
+  };
   if (!voxel.learned(config)) {
     ++voxel.images;
-    voxel.mean += d / static_cast<float>(voxel.images);
-    voxel.squares += d * (intensity - voxel.mean);
+    approach(1.0F / static_cast<float>(voxel.images));
+    voxel.squares += d * (sample.intensity - voxel.mean);
     if (voxel.learned(config)) settle(voxel);
     return;
   }
   ++voxel.images;
   const float weight =
       weight_share * std::max(static_cast<float>(config.adaptation), 1.0F / static_cast<float>(voxel.images));
-  voxel.mean += weight * d;
+  approach(weight);
   voxel.squares = (1.0F - weight) * (voxel.squares + weight * d * d);
 }
 
@@ -48,7 +53,7 @@ void remember_calm(ThermalVoxel& voxel) {
 
 void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfig& config) {
   const float d = sample.intensity - voxel.mean;
-  const float sigma = voxel.sigma(config);
+  const float own_sigma = voxel.sigma(config), sigma = std::hypot(std::max(own_sigma, sample.spread), sample.doubt);
   const float gate = static_cast<float>(config.gate_sigmas) * sigma;
   const float limit = std::max(gate, static_cast<float>(config.min_change));
   const bool changed = voxel.hot ? d > static_cast<float>(config.release_sigmas) * sigma : std::abs(d) > limit;
@@ -58,8 +63,9 @@ void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfi
     return;
   }
   remember_calm(voxel);
-  // Between the gate and the least change that counts it may be drift: followed, but slowly.
-  if (voxel.changes == 0) learn(voxel, sample.intensity, std::abs(d) > gate ? 0.25F : 1.0F, config);
+  // Between the gate and the least change that counts it may be drift: followed, but slowly. So are poor images.
+  const float trust = own_sigma * own_sigma / (sigma * sigma);
+  if (voxel.changes == 0) learn(voxel, sample, (std::abs(d) > gate ? 0.25F : 1.0F) * trust, config);
 }
 
 }  // namespace
@@ -69,12 +75,15 @@ float ThermalVoxel::variance(const VoxelModelConfig& config) const {
 }
 
 float ThermalVoxel::sigma(const VoxelModelConfig& config) const {
-  return std::max(static_cast<float>(config.noise), std::sqrt(variance(config)));
+  const float few = std::max(1.0F, static_cast<float>(config.learned_after) / static_cast<float>(std::max(1u, images)));
+  const float noise = std::sqrt(few) * std::max(static_cast<float>(config.noise), std::sqrt(variance(config)));
+  return std::hypot(noise, doubt, saturated * static_cast<float>(config.saturated_doubt));
 }
 
 ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelModelConfig& config) {
   if (voxel.points == 0.0F) voxel.first_seen = sample.time;
   const bool was_learned = voxel.learned(config);
+  voxel.passed = voxel.passed || (voxel.images > 0 && to_seconds(sample.time - voxel.last_seen) > config.passing_s);
   if (voxel.views == 0 || (sample.viewpoint_W - voxel.last_viewpoint_W).norm() > kViewSpacing_m) {
     voxel.last_viewpoint_W = sample.viewpoint_W;
     voxel.views = static_cast<std::uint16_t>(std::min<int>(voxel.views + 1, 60000));
@@ -87,7 +96,7 @@ ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelMode
   if (voxel.learned(config))
     judge(voxel, sample, config);
   else
-    learn(voxel, sample.intensity, 1.0F, config);
+    learn(voxel, sample, 1.0F, config);
   return voxel;
 }
 

@@ -9,14 +9,17 @@
 namespace pllit {
 
 struct VoxelModelConfig {
-  double noise = 6.0;           ///< least standard deviation: sensor, calibration, rounding; in the map's unit
-  int learned_after = 12;       ///< images before a voxel's normal intensity is known
-  int learned_views = 2;        ///< from so many viewpoints, or in five times as many images where the rig stands
-  double adaptation = 0.02;     ///< weight of each later image: the normal intensity fades in 50 images
-  double gate_sigmas = 3.0;     ///< beyond this an image does not count as normal
-  double min_change = 30.0;     ///< nor does it beyond this, and a smaller change is never hot; in the map's unit
-  double release_sigmas = 2.0;  ///< what is hot stays so until it is within this
-  int hits = 3;                 ///< images that must have shown a change
+  double noise = 6.0;             ///< least standard deviation: sensor, calibration, rounding; in the map's unit
+  int learned_after = 12;         ///< images before a voxel's normal intensity is known
+  int learned_views = 2;          ///< from so many viewpoints, or in five times as many images where the rig stands
+  int passing_images = 4;         ///< or after so many, when the rig has gone by and ...
+  double passing_s = 5.0;         ///< ... comes back after so long
+  double adaptation = 0.02;       ///< weight of each later image: the normal intensity fades in 50 images
+  double gate_sigmas = 3.0;       ///< beyond this an image does not count as normal
+  double min_change = 30.0;       ///< nor does it beyond this, and a smaller change is never hot; in the map's unit
+  double saturated_doubt = 60.0;  ///< one sigma of what is learned from saturated pixels; in the map's unit
+  double release_sigmas = 2.0;    ///< what is hot stays so until it is within this
+  int hits = 3;                   ///< images that must have shown a change
 };
 
 /// What one image showed of a voxel: the mean over its points there.
@@ -25,6 +28,9 @@ struct VoxelSample {
   Vector3f viewpoint_W;
   Vector3f offset_m;  ///< mean of the points from the voxel's centre
   float intensity = 0.0F, raw = 0.0F;
+  float doubt = 0.0F;      ///< of the calibration, one sigma
+  float saturated = 0.0F;  ///< share of the points that are at least so bright
+  float spread = 0.0F;     ///< of the image's intensities about what is known, one sigma
   int points = 1;
 };
 
@@ -37,21 +43,25 @@ struct ThermalVoxel {
   Vector3f offset_sum_m = Vector3f::Zero();  ///< of the points from the voxel's centre
   float points = 0.0F;
   float mean = 0.0F, squares = 0.0F;  ///< squares: sum of squared deviations, or their weighted mean once learned
+  float doubt = 0.0F;                 ///< of the calibration that the mean was learned with, one sigma
+  float saturated = 0.0F;             ///< share of what it was learned from that was at least so bright
   float changed_mean = 0.0F;          ///< short-term model
   float raw = 0.0F;                   ///< of the last image, as the camera gave it, for human eyes
   std::uint32_t images = 0;
   std::uint16_t views = 0;    ///< viewpoints a quarter of a metre apart
   std::uint16_t changes = 0;  ///< images in the short-term model
   std::uint8_t calm = 0;      ///< normal images in a row since
+  bool passed = false;        ///< the rig went by and has come back
   bool hot = false;
 
   bool learned(const VoxelModelConfig& config) const {
-    const auto enough = static_cast<std::uint32_t>(config.learned_after);
+    const auto enough = static_cast<std::uint32_t>(passed ? config.passing_images : config.learned_after);
     return images >= (views >= config.learned_views ? enough : 5 * enough);
   }
   /// Of the images that were normal.
   float variance(const VoxelModelConfig& config) const;
-  /// Standard deviation of what is normal, at least the configured noise.
+  /// Standard deviation of what is normal, with the doubts of calibration and saturation; at least the configured
+  /// noise, and more where few images showed it.
   float sigma(const VoxelModelConfig& config) const;
   /// What is to be expected now: the short-term mean while something has changed, else the normal one.
   float present() const { return changes > 0 ? changed_mean : mean; }

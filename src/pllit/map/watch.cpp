@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
@@ -10,14 +11,18 @@
 namespace pllit {
 namespace {
 
+bool was_there(const ThermalVoxel& voxel, Time before) {
+  constexpr std::uint32_t kFewest = 3;  // images
+  return voxel.first_seen < before && voxel.images >= kFewest;
+}
+
 /// Calls visit(voxel) for the voxels around one that are older than a time and not watched themselves.
 template <class Visit>
 void for_older_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey key, int reach, Time before,
                           const Visit& visit) {
-  constexpr std::uint32_t kFewest = 3;  // images
   for_neighbours(key, reach, [&](VoxelKey next) {
     const ThermalVoxel* voxel = next == key ? nullptr : map.find(next);
-    if (voxel && voxel->first_seen < before && voxel->images >= kFewest && !watch.contains(next)) visit(*voxel);
+    if (voxel && was_there(*voxel, before) && !watch.contains(next)) visit(*voxel);
   });
 }
 
@@ -36,13 +41,33 @@ struct Normal {
   float value, sigma;
 };
 
-/// By the older surfaces around; nothing where there are too few.
-std::optional<Normal> surroundings(const ThermalMap& map, const Watch& watch, VoxelKey key, Time before,
+/// The normal intensities of older surfaces that the image shows around a point, whatever their distance.
+std::vector<double> around_in_view(const WatchInput& input, const Watch& watch, VoxelKey key, Time before,
                                    const WatchConfig& config) {
+  const double least_cos = std::cos(config.surround_deg * std::numbers::pi / 180.0);
+  const auto ray_W = [&](VoxelKey of) -> Vector3d {
+    return (input.map.position_W(of, *input.map.find(of)) - input.sight.p_W).normalized();
+  };
+  const Vector3d towards_W = ray_W(key);
+  std::vector<double> values;
+  for (const VoxelKey seen : input.seen) {
+    const ThermalVoxel& voxel = *input.map.find(seen);
+    if (was_there(voxel, before) && !watch.contains(seen) && ray_W(seen).dot(towards_W) > least_cos)
+      values.push_back(static_cast<double>(voxel.mean));
+  }
+  return values;
+}
+
+/// By the older surfaces next to it, or where those are too few by those around it in the image: what stands behind it
+/// was to be seen in its place. Nothing where these are too few as well.
+std::optional<Normal> surroundings(const WatchInput& input, const Watch& watch, VoxelKey key, Time before,
+                                   const WatchConfig& config) {
+  const ThermalMap& map = input.map;
   std::vector<double> values;
   for_older_neighbours(map, watch, key, config.surround_voxels, before,
                        [&](const ThermalVoxel& voxel) { values.push_back(static_cast<double>(voxel.mean)); });
-  const auto around = surroundings_of(std::move(values));
+  auto around = surroundings_of(std::move(values));
+  if (!around) around = surroundings_of(around_in_view(input, watch, key, before, config));
   if (!around) return std::nullopt;
   return Normal{static_cast<float>(around->upper),
                 static_cast<float>(std::max(map.config().model.noise, around->spread))};
@@ -53,7 +78,7 @@ std::optional<Normal> normal_of_new(const WatchInput& input, const Watch& watch,
                                     const ThermalVoxel& voxel, Time before, const WatchConfig& config) {
   const SightEvidence evidence = input.past.evidence(input.map.position_W(key, voxel), before);
   if (!evidence.was_free()) return std::nullopt;
-  return surroundings(input.map, watch, key, before, config);
+  return surroundings(input, watch, key, before, config);
 }
 
 /// A quick look before all that: is it hotter than most of the image?
@@ -66,9 +91,23 @@ float level_of(const WatchInput& input) {
   return *at;
 }
 
-bool hot_against(float value, const Normal& normal, const VoxelModelConfig& model) {
-  return value - normal.value >
-         std::max(static_cast<float>(model.min_change), static_cast<float>(model.gate_sigmas) * normal.sigma);
+bool hot_against(const ThermalVoxel& voxel, const Normal& normal, double spread, const VoxelModelConfig& model) {
+  const float sigma = std::hypot(std::max(normal.sigma, static_cast<float>(spread)), voxel.doubt);
+  return voxel.mean - normal.value >
+         std::max(static_cast<float>(model.min_change), static_cast<float>(model.gate_sigmas) * sigma);
+}
+
+/// What was normal where a new voxel now is, if it is hot against that.
+std::optional<Normal> cooler_before(const WatchInput& input, const Watch& watch, VoxelKey key,
+                                    const ThermalVoxel& voxel, const WatchConfig& config) {
+  const VoxelModelConfig& model = input.map.config().model;
+  if (voxel.images % static_cast<std::uint32_t>(model.hits) != 0) return std::nullopt;  // it takes time
+  const Time before = voxel.first_seen - from_seconds(config.evidence_lead_s);
+  const auto normal = normal_of_new(input, watch, key, voxel, before, config);
+  if (!normal || !hot_against(voxel, *normal, input.spread, model)) return std::nullopt;
+  const float change = voxel.mean - normal->value;
+  if (explained_by_neighbours(input.map, watch, key, voxel.mean, change, before, config)) return std::nullopt;
+  return normal;
 }
 
 void note_heat(WatchedVoxel& watched, float value, Time time) {
@@ -105,26 +144,22 @@ const WatchedVoxel* hot_neighbour(const Watch& watch, VoxelKey key, float value,
   return part;
 }
 
-/// A voxel that was not there before.
+/// A voxel that was not there before: hot by itself, or part of a thing that is.
 void take_in_new(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
                  const WatchConfig& config) {
   const VoxelModelConfig& model = input.map.config().model;
-  const Time before = voxel.first_seen - from_seconds(config.evidence_lead_s);
   WatchedVoxel watched{.new_surface = true,
                        .since = voxel.first_seen,
                        .hits = static_cast<int>(voxel.images) - 1,
                        .position_W = input.map.position_W(key, voxel)};
-  const auto at = [&](int times) { return voxel.images == static_cast<std::uint32_t>(times * model.hits); };
-  if (const WatchedVoxel* part = hot_neighbour(watch, key, voxel.mean, model)) {
+  const WatchedVoxel* part = nullptr;
+  if (const auto normal = cooler_before(input, watch, key, voxel, config)) {
+    watched.normal = normal->value;
+    watched.sigma = normal->sigma;
+  } else if ((part = hot_neighbour(watch, key, voxel.mean, model))) {
     watched.joined = true;
     watched.normal = part->normal;
     watched.sigma = part->sigma;
-  } else if (at(1) || at(2)) {
-    const auto normal = normal_of_new(input, watch, key, voxel, before, config);
-    if (!normal || !hot_against(voxel.mean, *normal, model)) return;
-    if (explained_by_neighbours(input.map, watch, key, voxel.mean, voxel.mean - normal->value, before, config)) return;
-    watched.normal = normal->value;
-    watched.sigma = normal->sigma;
   } else {
     return;
   }

@@ -11,7 +11,8 @@ namespace pllit {
 struct WatchConfig {
   double forget_s = 5.0;         ///< voxels that belong to no anomaly are forgotten when not seen hot for so long
   int seam_voxels = 2;           ///< so near, heat that has always been explains a change: images lie a few pixels off
-  int surround_voxels = 8;       ///< how far around a new surface its surroundings are looked at
+  int surround_voxels = 8;       ///< how far around a new surface its surroundings are looked at ...
+  double surround_deg = 10.0;    ///< ... and in the image, where little is known there
   double evidence_lead_s = 0.5;  ///< sights so shortly before a surface was first seen do not speak of it
 };
 
@@ -40,6 +41,7 @@ struct WatchInput {
   std::span<const VoxelKey> seen;  ///< in this image
   const Sight& sight;              ///< of the last scans
   const SightLog& past;
+  double spread = 0.0;  ///< of the image's intensities about what is known, one sigma
 };
 
 /// All watched voxels, in a fixed order.

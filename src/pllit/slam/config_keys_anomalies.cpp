@@ -37,6 +37,7 @@ void list_anomalies(Section section, ThermographyConfig& config) {
               {1e-3, 1e4});
   section.add("release_sigmas", model.release_sigmas, "What is hot stays so until it is within this.", "", {0.1, 20.0});
   section.add("hits", model.hits, "Images that must have shown a change.", "", {1.0, 100.0});
+  section.add(PLLIT_KEY(saturated_grey), "From here on, greys of 8-bit video say \"at least\".", "grey", {1.0, 255.0});
   section.choose("anchor", config.anchor.shape, kShapes,
                  "How images are tied to the map: a shift, a line, or a curve (gain control by histograms).");
   section.add("anchor_loss", config.anchor.loss,

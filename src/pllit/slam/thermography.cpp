@@ -81,13 +81,17 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
       sample_image(points, input.T_W_C, camera_, {image_through(input.raw, unit), input.raw}, config_.sampling);
   frame.observations = static_cast<int>(view.observations.size());
   if (!tie_to_map(view.observations, frame)) return frame;
+  view.spread = frame.anchor.spread;
 
-  for (SurfaceObservation& observation : view.observations)
-    observation.intensity = static_cast<float>(
-        anchor_(static_cast<double>(observation.intensity), squared_radius(observation.pixel_px, camera_)));
+  for (SurfaceObservation& observation : view.observations) {
+    const double seen = observation.intensity, radius2 = squared_radius(observation.pixel_px, camera_);
+    observation.intensity = static_cast<float>(anchor_(seen, radius2));
+    observation.doubt = static_cast<float>(anchor_.doubt(seen, radius2));
+    observation.saturated = input.raw.depth() == CV_8U && observation.raw >= config_.saturated_grey;
+  }
   const std::vector<VoxelKey> seen = map_.integrate(view);
   if (frame.use == Use::mapped && !sight_.range_mm.empty()) {
-    detector_.update({.map = map_, .seen = seen, .sight = sight_, .past = sights_}, view);
+    detector_.update({.map = map_, .seen = seen, .sight = sight_, .past = sights_, .spread = view.spread}, view);
     sights_.add(sight_);
     keep_crops(input);
   }

@@ -11,6 +11,7 @@ struct ThermographyConfig {
   /// What the camera's numbers are, and with it what may be claimed. Greys and counts tell of changes only.
   IntensityUnit unit = IntensityUnit::grey;
   double kelvin_per_count = 0.01, kelvin_at_zero = 0.0;  ///< of radiometric images
+  double saturated_grey = 240.0;                         ///< from here on, greys of 8-bit video say "at least"
   SamplingConfig sampling;
   ThermalMapConfig map;
   AnchorConfig anchor;
