@@ -83,11 +83,11 @@ make_root() {
   get_debootstrap
   local partial=$environment_root.partial
   rm -rf "$partial" "$environment_root"
-  mkdir -p "$(dirname "$environment_root")"
+  mkdir -p "$partial"
   say "making a Debian 13 root in $environment_root (a few minutes, once)"
-  # A namespace of its own, so that an interrupted debootstrap leaves nothing mounted.
-  # shellcheck disable=SC2046  # an absent mirror must vanish
-  unshare -m debootstrap --variant=minbase trixie "$partial" $(machine_mirror) >&2 ||
+  # A namespace of its own, so that an interrupted debootstrap leaves nothing mounted; and at /mnt, for it stumbles over spaces.
+  # shellcheck disable=SC2046,SC2016  # an absent mirror must vanish
+  unshare -m bash -c 'mount --bind "$1" /mnt && debootstrap --variant=minbase trixie /mnt "${@:2}"' - "$partial" $(machine_mirror) >&2 ||
     refuse "debootstrap failed; its message is above and its log is $partial/debootstrap/debootstrap.log."
   copy_machine_settings "$partial"
   mv "$partial" "$environment_root"
