@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "pllit/report/pictures.hpp"
+#include "report/sample_visit.hpp"
 
 namespace pllit {
 namespace {
@@ -15,45 +16,9 @@ using testing::HasSubstr;
 using testing::Not;
 using Json = nlohmann::ordered_json;
 
-Time at(double seconds) { return Time(std::chrono::seconds(1'700'000'000)) + from_seconds(seconds); }
-
-Anomaly finding(std::uint32_t id, double peak_change) {
-  return {.id = id,
-          .state = AnomalyState::confirmed,
-          .position_W = {1.0, 2.0, 0.5},
-          .covariance_m2 = 1e-4 * Matrix3d::Identity(),
-          .extent_m = {0.2, 0.1, 0.3},
-          .peak_change = peak_change,
-          .mean_change = 0.5 * peak_change,
-          .peak_sigmas = peak_change / 5.0,
-          .mean_sigmas = peak_change / 10.0,
-          .first_seen = at(10.0),
-          .last_seen = at(20.0),
-          .confirmed = at(11.0),
-          .voxels = 12,
-          .frames = 30,
-          .views = 6,
-          .confidence = 0.8};
-}
-
-/// A visit that walked ten metres along a wall.
-ReportContent visit() {
-  ReportContent content{.title = "Hall <3>", .has_images = true};
-  content.thermal_map.fields = {{"intensity", {}}, {"images", {}}};
-  for (int i = 0; i < 100; ++i) {
-    content.trajectory.push_back({at(0.1 * i), pose_from(SO3::Identity(), Vector3d(0.1 * i, 0.0, 0.0))});
-    content.thermal_map.points.emplace_back(0.1F * static_cast<float>(i), 2.0F, 1.0F);
-    content.thermal_map.fields[0].values.push_back(static_cast<float>(i));
-    content.thermal_map.fields[1].values.push_back(i < 50 ? 20.0F : 2.0F);
-  }
-  return content;
-}
-
-Json run_json(int degraded = 0) {
-  return {{"frames", 100},      {"length_m", 9.9},
-          {"duration_s", 10.0}, {"status", "done"},
-          {"program", "pllit"}, {"health", {{"good", 100 - degraded}, {"degraded", degraded}, {"lost", 0}}}};
-}
+using test::finding;
+using test::run_json;
+using test::visit;
 
 TEST(Report, SaysOnTopWhatMattersMost) {
   ReportContent content = visit();
@@ -100,9 +65,22 @@ TEST(Report, NeedsNothingButItself) {
   content.anomalies = {finding(3, 40.0)};
   content.crops[3] = cv::Mat(20, 30, CV_8UC1, cv::Scalar(7));
   const std::string html = report_html(content, run_json());
-  for (const char* outside : {"http://", "https://", "<script", "<link"}) EXPECT_THAT(html, Not(HasSubstr(outside)));
+  for (const char* outside : {"http://", "https://", "<script src", "<link", "import", "fetch("})
+    EXPECT_THAT(html, Not(HasSubstr(outside)));
   EXPECT_THAT(html, HasSubstr("<title>Hall &lt;3&gt;</title>"));
   EXPECT_THAT(html, HasSubstr("Thermogram of finding 3"));
+}
+
+TEST(Report, CarriesAViewOfMapWayAndFindingsThatTurns) {
+  ReportContent content = visit();
+  content.anomalies = {finding(3, 40.0)};
+  const std::string html = report_html(content, run_json());
+  const std::string begin = "id=\"view3d-data\">";
+  const std::size_t from = html.find(begin) + begin.size();
+  const Json data = Json::parse(html.substr(from, html.find("</script>", from) - from));
+  EXPECT_EQ(data["findings"], (Json{{{"id", 3}, {"position_m", {1.0, 2.0, 0.5}}}}));
+  EXPECT_EQ(data["way"].size(), 20u);                                       // half a metre apart
+  EXPECT_GE(data["points"].get<std::string>().size(), 7u * 98u / 3u * 4u);  // all but a few stray ones
 }
 
 TEST(Report, StandsWithNothingInIt) { EXPECT_THAT(report_html({.title = "empty"}, run_json()), HasSubstr("</html>")); }

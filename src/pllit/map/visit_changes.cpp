@@ -56,6 +56,11 @@ struct Changed {
   double change, sigmas;
 };
 
+/// Variance of a later intensity brought to the earlier visit's: of what was seen, and of the curve that brings it.
+double brought_variance(const Known& seen, const AnchorFit& drift) {
+  return seen.mean_variance() + std::pow(drift.spread, 2) + std::pow(drift.curve.doubt(seen.mean()), 2);
+}
+
 /// Changes of surfaces that both visits saw, by at least the gate. At seams one of two neighbouring voxels may hold
 /// what the other held: a change that a neighbour's past explains is none.
 void add_known(const Voxels& before, const Voxels& now, const VisitChanges& result, const VisitChangesConfig& config,
@@ -64,7 +69,7 @@ void add_known(const Voxels& before, const Voxels& now, const VisitChanges& resu
     const auto past = before.find(key);
     if (past == before.end()) continue;
     const double value = result.drift.curve(seen.mean()), change = value - past->second.mean();
-    const double sigma = std::sqrt(past->second.mean_variance() + seen.mean_variance() + std::pow(result.drift.rms, 2));
+    const double sigma = std::sqrt(past->second.mean_variance() + brought_variance(seen, result.drift));
     if (std::abs(change) < std::max(config.min_change, config.gate_sigmas * sigma)) continue;
     bool explained = false;
     for_neighbours(key, 1, [&](VoxelKey next) {
@@ -92,7 +97,7 @@ void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& 
     const auto surroundings = surroundings_of(std::move(around));
     if (!surroundings) continue;
     const double change = result.drift.curve(seen.mean()) - surroundings->upper;
-    const double sigma = std::hypot(surroundings->spread, result.drift.rms, std::sqrt(seen.mean_variance()));
+    const double sigma = std::hypot(surroundings->spread, std::sqrt(brought_variance(seen, result.drift)));
     if (change > std::max(config.min_change, config.gate_sigmas * sigma))
       changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma});
   }

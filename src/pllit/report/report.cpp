@@ -7,6 +7,7 @@
 
 #include "pllit/report/html.hpp"
 #include "pllit/report/pictures.hpp"
+#include "pllit/report/view3d.hpp"
 
 namespace pllit {
 namespace {
@@ -16,7 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kStyle = R"(
 :root{color-scheme:light dark}body{font:16px/1.5 system-ui,sans-serif;margin:0 auto;max-width:60rem;padding:1rem}
 h1{font-size:1.5rem;margin:0}h2{font-size:1.15rem;margin:2rem 0 .5rem;border-bottom:1px solid #8886}
-img{max-width:100%;height:auto;border-radius:4px}table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
+img,canvas{max-width:100%;height:auto;border-radius:4px}canvas{touch-action:none;cursor:grab}table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
 td,th{padding:.25rem .5rem;text-align:left;border-bottom:1px solid #8884;vertical-align:top}.wide{overflow-x:auto}
 .verdict{font-size:1.1rem;padding:.75rem 1rem;border-radius:6px;margin:1rem 0;border-left:6px solid}
 .alarm{border-color:#c22;background:#c222}.calm{border-color:#282;background:#2822}.doubt{border-color:#c80;background:#c802}
@@ -171,9 +172,10 @@ std::string report_html(const ReportContent& content, const Json& run) {
                         utc_text(to_seconds(content.trajectory.back().time)));
   html += verdict(content, alarms.size(), run);
   const bool heat = !content.thermal_map.points.empty();
-  html += "<h2>Plan</h2>\n" + image_tag(plan_of(heat ? content.thermal_map : content.map, content.trajectory, alarms),
-                                        heat ? "Thermographic map from above" : "Map from above");
-  html += coverage(content);
+  const PointTable& map = heat ? content.thermal_map : content.map;
+  html += "<h2>Plan</h2>\n" +
+          image_tag(plan_of(map, content.trajectory, alarms), heat ? "Thermographic map from above" : "Map from above");
+  html += coverage(content) + view3d(map, content.trajectory, alarms);
   if (!alarms.empty()) html += "<h2>Findings</h2>\n";
   for (const Anomaly& alarm : alarms) html += card(alarm, content);
   return html + health_section(content, run) + footer(content, run) + "</body></html>\n";
