@@ -196,6 +196,35 @@ TEST(Thermography, TellsWhenEachHotPointWasLastSeenSoThatLoopsCanMoveIt) {
   }
 }
 
+TEST(Thermography, TakesPartsThatLieCloseTogetherForOneThing) {
+  Watched watched{.world = room()};
+  for (const double side : {-1.0, 1.0}) {
+    watched.world.boxes.push_back(on_table(90.0));
+    Box& half = watched.world.boxes.back();
+    half.centre_W.y() += side * 0.17;
+    half.size_m.y() = 0.2;
+    half.grey = [](double t_s) { return t_s < 12.0 ? 90.0 : 150.0; };
+  }
+  watched.until(20.0);
+  ASSERT_EQ(watched.alarms().size(), 1u) << watched.told();
+  EXPECT_GT(watched.alarms()[0].extent_m.y(), 0.35);
+}
+
+TEST(Thermography, WaitsForMoreViewpointsWhereHeatIsOneVoxelThick) {
+  // A strip of the wall: in front of it the camera, with four pixels a decimetre, would not see it at all.
+  const auto alarm_after_s = [](double width_m) {
+    Watched watched{.world = room()};
+    watched.world.boxes.push_back(
+        {{4.89, 0.125, 1.4}, {0.02, width_m, 0.8}, [](double t_s) { return t_s < 15.0 ? 95.0 : 215.0; }});
+    watched.until(32.0);
+    return watched.alarm_s ? *watched.alarm_s - 15.0 : std::numeric_limits<double>::infinity();
+  };
+  const double wide_s = alarm_after_s(0.3), thin_s = alarm_after_s(0.05);
+  EXPECT_LT(wide_s, 3.0);
+  EXPECT_GT(thin_s, wide_s);
+  EXPECT_LT(thin_s, 15.0);
+}
+
 TEST(Thermography, FindsAHotThingThatWasBroughtIn) {
   Watched watched{.world = room()};
   watched.world.boxes.push_back(on_table(150.0));

@@ -1,7 +1,9 @@
 #include "pllit/map/anomalies.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
 
@@ -74,6 +76,20 @@ double confidence(const Anomaly& anomaly) {
   return contrast * size * views;
 }
 
+/// Whether a cluster lies so near to an anomaly that they are one thing, of which the LiDAR's rings left parts out.
+bool next_to(const Anomaly& anomaly, const std::vector<VoxelKey>& cluster, const Watch& watch) {
+  constexpr double kNext_m = 0.2;
+  return std::ranges::any_of(cluster,
+                             [&](VoxelKey key) { return distance_m(anomaly, watch.at(key).position_W) < kNext_m; });
+}
+
+/// One voxel thick: an edge that calibration has shifted by a few pixels looks like that, from few viewpoints.
+bool is_thin(const Anomaly& anomaly, double voxel_m) {
+  std::array<double, 3> sides{anomaly.extent_m.x(), anomaly.extent_m.y(), anomaly.extent_m.z()};
+  std::ranges::sort(sides);
+  return sides[1] < 1.5 * voxel_m;
+}
+
 }  // namespace
 
 void AnomalyDetector::update(const WatchInput& input, const ThermalView& view) {
@@ -85,7 +101,7 @@ void AnomalyDetector::update(const WatchInput& input, const ThermalView& view) {
   }
   for (auto& [id, track] : tracks_) {
     measure(track, view);
-    settle(track, view.time, input.map.config().model.min_change);
+    settle(track, view.time, input.map.config());
     if (track.anomaly.last_seen != view.time) continue;
     const auto crop = crop_of(watch_, id, view, input.map.config().voxel_m);
     std::optional<ImageCrop>& best = track.anomaly.crop;
@@ -114,35 +130,30 @@ std::vector<AnomalyDetector::Cluster> AnomalyDetector::clusters(const ThermalMap
   return clusters;
 }
 
-/// The anomaly that a cluster belongs to: the oldest of those whose voxels it holds, which takes in the others; else
-/// one that it lies next to; else a new one.
+/// The anomaly that a cluster belongs to: the oldest of those that hold voxels of it or lie next to it, which takes in
+/// the others; else a new one.
 AnomalyDetector::Track& AnomalyDetector::owner_of(const Cluster& cluster, const ThermalView& view) {
-  constexpr double kNext_m = 0.15;
-  std::uint32_t id = 0;
-  Vector3d sum_W = Vector3d::Zero();
-  for (const VoxelKey key : cluster) {
-    const WatchedVoxel& watched = watch_.at(key);
-    sum_W += watched.position_W;
-    if (watched.owner != 0 && (id == 0 || watched.owner < id)) id = watched.owner;
-  }
-  const Vector3d centroid_W = sum_W / static_cast<double>(cluster.size());
-  for (const VoxelKey key : cluster) {
-    const std::uint32_t other = watch_.at(key).owner;
-    if (other == 0 || other == id) continue;
-    for (auto& [k, watched] : watch_)
-      if (watched.owner == other) watched.owner = id;
-    tracks_.erase(other);
-  }
-  if (id == 0)
-    for (const auto& [number, track] : tracks_)
-      if (distance_m(track.anomaly, centroid_W) < kNext_m) {
-        id = number;
-        break;
-      }
-  if (id != 0) return tracks_.at(id);
-  id = next_id_++;
+  std::set<std::uint32_t> owners;
+  for (const auto& [number, track] : tracks_)
+    if (next_to(track.anomaly, cluster, watch_)) owners.insert(number);
+  for (const VoxelKey key : cluster)
+    if (const std::uint32_t owner = watch_.at(key).owner; owner != 0) owners.insert(owner);
+  if (owners.empty()) return new_track(cluster, view);
+  const std::uint32_t oldest = *owners.begin();
+  owners.erase(oldest);
+  for (auto& [key, watched] : watch_)
+    if (owners.contains(watched.owner)) watched.owner = oldest;
+  for (const std::uint32_t other : owners) tracks_.erase(other);
+  return tracks_.at(oldest);
+}
+
+AnomalyDetector::Track& AnomalyDetector::new_track(const Cluster& cluster, const ThermalView& view) {
+  Eigen::AlignedBox3d box_W;
+  for (const VoxelKey key : cluster) box_W.extend(watch_.at(key).position_W);
+  const std::uint32_t id = next_id_++;
   Track track{.anomaly = {.id = id, .first_seen = view.time}, .last_viewpoint_W = view.viewpoint_W};
-  track.anomaly.position_W = centroid_W;
+  track.anomaly.position_W = box_W.center();
+  track.anomaly.extent_m = box_W.sizes();
   track.anomaly.views = 1;
   return tracks_.emplace(id, track).first->second;
 }
@@ -172,17 +183,21 @@ void AnomalyDetector::measure(Track& track, const ThermalView& view) {
   anomaly.confidence = confidence(anomaly);
 }
 
-void AnomalyDetector::settle(Track& track, Time now, double least_change) const {
+void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map) const {
+  constexpr int kStillFrames = 15;  // a rig that stands sees it in all of them, one that passes by in a few
   constexpr int kFewestSeeds = 2, kMostJoined = 5;  // one voxel's mistake must not take in a whole cabinet
   Anomaly& anomaly = track.anomaly;
   const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
   if (anomaly.state == AnomalyState::fresh) {
     const bool stays = members.left <= config_.max_leaving * members.all;
     if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
-    if (members.change < least_change * members.hot) return;
+    if (members.change < map.model.min_change * members.hot) return;
     const int seeds = members.known + members.new_surfaces;
     if (seeds < std::max(kFewestSeeds, members.hot / kMostJoined)) return;
-    if (anomaly.views < config_.min_views && to_seconds(now - anomaly.first_seen) < config_.still_dwell_s) return;
+    const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
+    const bool watched_long =
+        to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;
+    if (anomaly.views < views && !watched_long) return;
     anomaly.state = AnomalyState::confirmed;
     anomaly.confirmed = now;
     return;

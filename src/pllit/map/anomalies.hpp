@@ -13,7 +13,8 @@ struct AnomalyConfig {
   WatchConfig watch;
   int min_voxels = 4;    ///< smaller clusters are noise
   double dwell_s = 0.5;  ///< how long its voxels must have been hot before the alarm is raised
-  int min_views = 2;     ///< viewpoints that it must have been hot from: what is seen past an unknown edge moves ...
+  int min_views = 2;  ///< viewpoints that it must have been hot from, twice as many where it is one voxel thick: what
+                      ///< is seen past an edge moves ...
   double still_dwell_s = 3.0;  ///< ... or how long, for a rig that stands
   double join_m = 0.1;         ///< hot voxels in neighbouring cells of this size are one anomaly
   double max_leaving = 0.3;    ///< clusters of which a greater share has left their place are moving: people, vehicles
@@ -43,8 +44,9 @@ class AnomalyDetector {
 
   std::vector<Cluster> clusters(const ThermalMap& map) const;
   Track& owner_of(const Cluster& cluster, const ThermalView& view);
+  Track& new_track(const Cluster& cluster, const ThermalView& view);
   void measure(Track& track, const ThermalView& view);
-  void settle(Track& track, Time now, double least_change) const;
+  void settle(Track& track, Time now, const ThermalMapConfig& map) const;
   void drop_vanished(Time now);
 
   AnomalyConfig config_;
