@@ -48,13 +48,21 @@ Json change_json(const VisitChange& change) {
 }
 
 /// One visit against the baseline.
-Expected<Json> compared(const Visit& baseline, const std::string& folder) {
+Expected<Json> compared(const Visit& baseline, const std::string& baseline_folder, const std::string& folder) {
   auto visit = read_visit(folder);
   if (!visit) return std::unexpected(visit.error());
   const auto located = relocalise(baseline.map, visit->map);
   if (!located) return in_context(std::format("comparing '{}'", folder), located.error());
   for (Vector3f& p_W : visit->heat.points) p_W = located->T_A_B.act(p_W.cast<double>()).cast<float>();
   const VisitChanges found = changes_between(baseline.heat, visit->heat, baseline.map.points_W);
+  // Rooms of one building style fit onto each other here and there; what one visit saw of a site, another sees again.
+  constexpr double kLeastSeenAgain = 0.3;
+  const double again = found.shared / std::max(1.0, double(found.shared + std::min(found.only_before, found.only_now)));
+  if (again < kLeastSeenAgain)
+    return input_error(
+        std::format("comparing '{}': where it fits onto '{}' only {:.0f} % of its surfaces lie on surfaces seen there; "
+                    "are they of the same site?",
+                    folder, baseline_folder, 100.0 * again));
   Json json{{"session", folder},
             {"T_baseline_session", pose_json(located->T_A_B)},
             {"relocalisation",
@@ -100,7 +108,7 @@ ExitCode run(const Options& options) {
   Json json{{"schema_version", kSchemaVersion}, {"baseline", options.baseline}, {"sessions", Json::array()}};
   std::string text;
   for (const std::string& folder : options.sessions) {
-    const auto visit = compared(*baseline, folder);
+    const auto visit = compared(*baseline, options.baseline, folder);
     if (!visit) return report(visit.error());
     text += text_of(*visit);
     json["sessions"].push_back(*visit);

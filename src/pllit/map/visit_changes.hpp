@@ -26,7 +26,8 @@ struct VisitChangesConfig {
   double gate_sigmas = 3.0;  ///< of the surface's spread and of the drift's fit
   int min_voxels = 4;        ///< smaller clusters are noise
   double surround_m = 0.8;   ///< how far around a new surface its surroundings are looked at
-  AnchorConfig drift{.loss = 20.0, .min_pairs = 60, .min_share = 0.4};  ///< of what came in between: weather, gain
+  /// Of what came in between: weather, gain. A map is the mean of many images, whose curves bend differently.
+  AnchorConfig drift{.loss = 20.0, .min_pairs = 60, .min_share = 0.4, .curve_slope_doubt = 0.15};
 };
 
 /// A cluster of changed voxels; changes in the unit of the first map, signed.
