@@ -55,14 +55,11 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
   if (!located) return in_context(std::format("comparing '{}'", folder), located.error());
   for (Vector3f& p_W : visit->heat.points) p_W = located->T_A_B.act(p_W.cast<double>()).cast<float>();
   const VisitChanges found = changes_between(baseline.heat, visit->heat, baseline.map.points_W);
-  // Rooms of one building style fit onto each other here and there; what one visit saw of a site, another sees again.
-  constexpr double kLeastSeenAgain = 0.3;
-  const double again = found.shared / std::max(1.0, double(found.shared + std::min(found.only_before, found.only_now)));
-  if (again < kLeastSeenAgain)
+  if (!found.same_site)
     return input_error(
         std::format("comparing '{}': where it fits onto '{}' only {:.0f} % of its surfaces lie on surfaces seen there; "
                     "are they of the same site?",
-                    folder, baseline_folder, 100.0 * again));
+                    folder, baseline_folder, 100.0 * found.seen_again));
   Json json{{"session", folder},
             {"T_baseline_session", pose_json(located->T_A_B)},
             {"relocalisation",

@@ -52,6 +52,7 @@ TEST(VisitChanges, AreNoneWhereOnlyTheWeatherChanged) {
   EXPECT_TRUE(found.drift.holds);
   EXPECT_GT(found.shared, 300);
   EXPECT_EQ(found.only_before + found.only_now, 0);
+  EXPECT_TRUE(found.same_site);
   EXPECT_TRUE(found.changes.empty());
 }
 
@@ -80,6 +81,7 @@ TEST(VisitChanges, SayNothingWhereTheVisitsShareTooLittle) {
   const VisitChanges found = changes_between(before, elsewhere, before.points);
   EXPECT_FALSE(found.drift.holds);
   EXPECT_EQ(found.shared, 0);
+  EXPECT_FALSE(found.same_site);
   EXPECT_TRUE(found.changes.empty());
   EXPECT_FALSE(changes_between({}, {}, {}).drift.holds);
 }

@@ -178,6 +178,7 @@ TEST(Thermography, FindsAKnownSurfaceThatHeatsUp) {
   watched.until(60.0);
   ASSERT_EQ(watched.alarms().size(), 1u);
   EXPECT_EQ(watched.alarms()[0].state, AnomalyState::confirmed);
+  EXPECT_FALSE(watched.stage.anomaly_points().points.empty());
 }
 
 TEST(Thermography, TellsWhenEachHotPointWasLastSeenSoThatLoopsCanMoveIt) {

@@ -168,12 +168,14 @@ AnchorCurve refined(std::span<const AnchorPair> pairs, AnchorCurve curve, const 
 }
 
 /// Notes between which intensities surfaces that are known without doubt hold the curve, but for a few at each end.
-void note_support(std::span<const AnchorPair> pairs, const AnchorConfig& config, AnchorCurve& curve) {
+void note_support(std::span<const AnchorPair> pairs, const std::vector<double>& residuals, const AnchorConfig& config,
+                  AnchorCurve& curve) {
   constexpr double kEnds = 0.01;
   std::vector<std::pair<double, double>> agreeing;  // intensity without the lens, weight
   double total = 0.0;
-  for (const AnchorPair& pair : pairs) {
-    if (std::abs(pair.normal - curve(pair.now, pair.radius2)) >= config.loss) continue;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const AnchorPair& pair = pairs[i];
+    if (std::abs(residuals[i]) >= config.loss) continue;
     const auto weight = static_cast<double>(pair.weight * pair.trust);
     agreeing.emplace_back(pair.now - curve.lens * pair.radius2, weight);
     total += weight;
@@ -193,12 +195,11 @@ void note_support(std::span<const AnchorPair> pairs, const AnchorConfig& config,
                                                       : 0.0;
 }
 
-/// From the median of the residuals' sizes.
-double spread_about(std::span<const AnchorPair> pairs, const AnchorCurve& curve) {
+/// From the median of their sizes.
+double spread_of(const std::vector<double>& residuals) {
   constexpr double kGaussian = 1.4826;
   std::vector<float> sizes;
-  for (const AnchorPair& pair : pairs)
-    sizes.push_back(static_cast<float>(std::abs(pair.normal - curve(pair.now, pair.radius2))));
+  for (const double r : residuals) sizes.push_back(static_cast<float>(std::abs(r)));
   return kGaussian * quantile(std::move(sizes), 0.5);
 }
 
@@ -268,18 +269,19 @@ AnchorFit anchor_curve(std::span<const AnchorPair> pairs, const AnchorCurve& bef
     const AnchorCurve a = refined(pairs, before, config), b = refined(pairs, through_quantiles(pairs, before), config);
     curve = robust_cost(pairs, a, config.loss) <= 1.1 * robust_cost(pairs, b, config.loss) ? a : b;
   }
+  std::vector<double> residuals;
+  for (const AnchorPair& pair : pairs) residuals.push_back(pair.normal - curve(pair.now, pair.radius2));
   double squares = 0.0;
-  for (const AnchorPair& pair : pairs) {
-    const double r = pair.normal - curve(pair.now, pair.radius2);
+  for (const double r : residuals) {
     if (std::abs(r) >= config.loss) continue;
     ++fit.inliers;
     squares += r * r;
   }
-  fit.spread = spread_about(pairs, curve);
+  fit.spread = spread_of(residuals);
   fit.rms = fit.inliers > 0 ? std::sqrt(squares / fit.inliers) : 0.0;
   fit.holds = fit.inliers >= config.min_pairs && fit.inliers >= config.min_share * fit.pairs;
   if (!fit.holds) return fit;
-  note_support(pairs, config, curve);
+  note_support(pairs, residuals, config, curve);
   fit.curve = std::move(curve);
   return fit;
 }

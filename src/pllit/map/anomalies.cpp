@@ -141,6 +141,7 @@ AnomalyDetector::Track& AnomalyDetector::owner_of(const Cluster& cluster, const 
   if (owners.empty()) return new_track(cluster, view);
   const std::uint32_t oldest = *owners.begin();
   owners.erase(oldest);
+  if (owners.empty()) return tracks_.at(oldest);
   for (auto& [key, watched] : watch_)
     if (owners.contains(watched.owner)) watched.owner = oldest;
   for (const std::uint32_t other : owners) tracks_.erase(other);

@@ -135,6 +135,9 @@ VisitChanges changes_between(const PointTable& before, const PointTable& now, st
   VisitChanges result{.drift = drift_between(past, present, config)};
   for (const auto& [key, known] : present) ++(past.contains(key) ? result.shared : result.only_now);
   result.only_before = static_cast<int>(past.size()) - result.shared;
+  result.seen_again =
+      result.shared / std::max(1.0, double(result.shared + std::min(result.only_before, result.only_now)));
+  result.same_site = result.seen_again >= config.least_seen_again;
   if (!result.drift.holds) return result;
   std::set<VoxelKey> known_before;
   for (const Vector3f& p_W : before_points_W) known_before.insert(voxel_key(voxel_of(p_W, 1.0 / config.voxel_m)));

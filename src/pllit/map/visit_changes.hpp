@@ -26,6 +26,9 @@ struct VisitChangesConfig {
   double gate_sigmas = 3.0;  ///< of the surface's spread and of the drift's fit
   int min_voxels = 4;        ///< smaller clusters are noise
   double surround_m = 0.8;   ///< how far around a new surface its surroundings are looked at
+  /// Share of the smaller visit's surfaces that the other must have seen: rooms of one building style fit onto each
+  /// other here and there, but what one visit saw of a site, another sees again.
+  double least_seen_again = 0.3;
   /// Of what came in between: weather, gain. A map is the mean of many images, whose curves bend differently.
   AnchorConfig drift{.loss = 20.0, .min_pairs = 60, .min_share = 0.4, .curve_slope_doubt = 0.15};
 };
@@ -42,6 +45,8 @@ struct VisitChange {
 struct VisitChanges {
   AnchorFit drift{};  ///< second visit's intensities to the first's, over surfaces that both saw
   int shared = 0, only_before = 0, only_now = 0;  ///< voxels
+  double seen_again = 0.0;                        ///< share of the smaller visit's voxels that are shared
+  bool same_site = false;                         ///< enough of them
   std::vector<VisitChange> changes{};             ///< greatest first; empty where the drift does not hold
 };
 

@@ -58,14 +58,11 @@ cv::Mat enlarged(const cv::Mat& small, int width_px) {
 /// Mean of the intensities that fall into each pixel, 0 to 255; and where there are any.
 std::pair<cv::Mat, cv::Mat> levels(const PointTable& map, const std::vector<float>& intensity, const Plan& plan) {
   cv::Mat sum = cv::Mat::zeros(plan.size(), CV_32FC1), count = cv::Mat::zeros(plan.size(), CV_32FC1);
-  std::vector<float> sorted = intensity;
-  std::ranges::sort(sorted);
-  const float low = sorted[sorted.size() / 50], high = sorted[sorted.size() - 1 - sorted.size() / 50];
-  const float scale = high > low ? 255.0F / (high - low) : 0.0F;
+  const Stretch stretch(intensity);
   for (std::size_t i = 0; i < map.points.size(); ++i) {
     const cv::Point p = plan.at(map.points[i].head<2>().cast<double>());
     if (p.x < 0 || p.y < 0 || p.x >= sum.cols || p.y >= sum.rows) continue;
-    sum.at<float>(p) += std::clamp(scale * (intensity[i] - low), 0.0F, 255.0F);
+    sum.at<float>(p) += stretch(intensity[i]);
     count.at<float>(p) += 1.0F;
   }
   cv::Mat mean, level;
@@ -96,6 +93,16 @@ void draw_alarms(cv::Mat& picture, const Plan& plan, std::span<const Anomaly> al
 }
 
 }  // namespace
+
+Stretch::Stretch(std::vector<float> values) {
+  if (values.empty()) return;
+  std::ranges::sort(values);
+  const float high = values[values.size() - 1 - values.size() / 50];
+  low_ = values[values.size() / 50];
+  scale_ = high > low_ ? 255.0F / (high - low_) : 0.0F;
+}
+
+float Stretch::operator()(float value) const { return std::clamp(scale_ * (value - low_), 0.0F, 255.0F); }
 
 cv::Mat plan_of(const PointTable& map, const Trajectory& trajectory, std::span<const Anomaly> alarms,
                 const PlanConfig& config) {

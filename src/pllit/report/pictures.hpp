@@ -11,6 +11,16 @@
 
 namespace pllit {
 
+/// Takes the 2nd to the 98th percentile of values to 0 to 255, what lies beyond to the ends.
+class Stretch {
+ public:
+  explicit Stretch(std::vector<float> values);
+  float operator()(float value) const;
+
+ private:
+  float low_ = 0.0F, scale_ = 0.0F;
+};
+
 struct PlanConfig {
   int width_px = 1000;
   double margin_m = 1.0;

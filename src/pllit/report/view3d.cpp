@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pllit/report/html.hpp"
+#include "pllit/report/pictures.hpp"
 
 namespace pllit {
 namespace {
@@ -89,15 +90,10 @@ draw();
 })();
 )";
 
-/// 0 to 255 between the 2nd and the 98th percentile.
 std::vector<std::uint8_t> levels_of(const std::vector<float>& values) {
-  std::vector<float> sorted = values;
-  std::ranges::sort(sorted);
-  const float low = sorted[sorted.size() / 50], high = sorted[sorted.size() - 1 - sorted.size() / 50];
-  const float scale = high > low ? 255.0F / (high - low) : 0.0F;
+  const Stretch stretch(values);
   std::vector<std::uint8_t> levels;
-  for (const float value : values)
-    levels.push_back(static_cast<std::uint8_t>(std::clamp(scale * (value - low), 0.0F, 255.0F)));
+  for (const float value : values) levels.push_back(static_cast<std::uint8_t>(stretch(value)));
   return levels;
 }
 
