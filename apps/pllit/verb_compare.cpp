@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CompareOptions {
   std::string baseline;
   std::vector<std::string> sessions;
   bool json = false;
@@ -78,7 +78,7 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
   return json;
 }
 
-std::string text_of(const Json& visit) {
+std::string visit_text(const Json& visit) {
   const int shared = visit["voxels"]["shared"], missed = visit["voxels"]["not_seen_again"];
   std::string text =
       std::format("{}\n  found its place: {} of {} places agree, {:.0f} mm across surfaces\n",
@@ -99,7 +99,7 @@ std::string text_of(const Json& visit) {
   return text + (visit["changes"].empty() ? "  nothing has changed\n" : "");
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const CompareOptions& options) {
   const auto baseline = read_visit(options.baseline);
   if (!baseline) return report(baseline.error());
   Json json{{"schema_version", kSchemaVersion}, {"baseline", options.baseline}, {"sessions", Json::array()}};
@@ -107,7 +107,7 @@ ExitCode run(const Options& options) {
   for (const std::string& folder : options.sessions) {
     const auto visit = compared(*baseline, options.baseline, folder);
     if (!visit) return report(visit.error());
-    text += text_of(*visit);
+    text += visit_text(*visit);
     json["sessions"].push_back(*visit);
   }
   std::fputs((options.json ? json.dump(2) + "\n" : text).c_str(), stdout);
@@ -119,7 +119,7 @@ ExitCode run(const Options& options) {
 Verb add_compare(CLI::App& program) {
   CLI::App* verb =
       program.add_subcommand("compare", "Find a visit's place in an earlier one, and what has changed since");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareOptions>();
   verb->add_option("baseline", options->baseline, "Session of the earlier visit")->type_name("BASELINE")->required();
   verb->add_option("session", options->sessions, "Sessions of later visits")->type_name("SESSION...")->required();
   verb->add_flag("--json", options->json, "Print the comparison as JSON");

@@ -11,7 +11,7 @@
 namespace pllit::app {
 namespace {
 
-struct Options {
+struct ConfigOptions {
   std::string source;
   std::vector<std::string> settings;
   bool keys = false, presets = false;
@@ -19,7 +19,7 @@ struct Options {
 
 void print(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
-Expected<Config> effective_config(const Options& options) {
+Expected<Config> effective_config(const ConfigOptions& options) {
   Expected<Config> config = options.source.empty() ? Expected<Config>(Config{}) : find_config(options.source);
   for (const std::string& setting : options.settings) {
     if (config) config = apply_setting(*std::move(config), setting);
@@ -33,7 +33,7 @@ void print_presets() {
   for (const Preset& preset : presets()) print(std::format("{:<12} {}\n", preset.name, summary_of(preset)));
 }
 
-ExitCode run(const Options& options, bool dump) {
+ExitCode run(const ConfigOptions& options, bool dump) {
   if (options.presets) {
     print_presets();
   } else if (options.keys) {
@@ -52,7 +52,7 @@ ExitCode run(const Options& options, bool dump) {
 
 Verb add_config(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("config", "Print the configuration, its keys or the presets");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConfigOptions>();
   CLI::Option* dump =
       verb->add_option("--dump", options->source, "Complete YAML with comments: of the defaults, a preset or a file")
           ->type_name("[PRESET|FILE]")

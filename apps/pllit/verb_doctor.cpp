@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct DoctorOptions {
   std::vector<std::string> sources, settings;
   std::string config;
   bool json = false;
@@ -81,7 +81,7 @@ std::string stream_text(const char* name, const Json& stream) {
       stream["jitter_s"].get<double>());
 }
 
-std::string text_of(const Json& json) {
+std::string inspection_text(const Json& json) {
   std::string text;
   for (const Json& topic : json["topics"])
     text += std::format("{:<32} {:<36} {:>8} messages {:>8.1f} Hz\n", topic["name"].get<std::string>(),
@@ -122,7 +122,7 @@ std::string shell_quoted(const std::string& word) {
   return quoted + "'";
 }
 
-std::string run_command(const Options& options) {
+std::string run_command(const DoctorOptions& options) {
   std::string command = "./pllit run";
   for (const std::string& source : options.sources) command += " " + shell_quoted(source);
   if (!options.config.empty()) command += " --config " + shell_quoted(options.config);
@@ -151,7 +151,7 @@ Expected<void> inspect(OpenedSource source, const Config& config, Json& json) {
   return {};
 }
 
-Expected<Json> diagnose(const Options& options) {
+Expected<Json> diagnose(const DoctorOptions& options) {
   const auto config = read_config(options.config, options.settings);
   if (!config) return std::unexpected(config.error());
   Json json{{"schema_version", kSchemaVersion}, {"topics", topics_json(options.sources)},
@@ -166,10 +166,10 @@ Expected<Json> diagnose(const Options& options) {
   return json;
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const DoctorOptions& options) {
   const auto json = diagnose(options);
   if (!json) return report(json.error());
-  std::fputs((options.json ? json->dump(2) + "\n" : text_of(*json)).c_str(), stdout);
+  std::fputs((options.json ? json->dump(2) + "\n" : inspection_text(*json)).c_str(), stdout);
   return (*json)["problems"].empty() ? ExitCode::done : ExitCode::usage;
 }
 
@@ -177,7 +177,7 @@ ExitCode run(const Options& options) {
 
 Verb add_doctor(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("doctor", "Examine a recording: rates, gaps, clocks, units, what is missing");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DoctorOptions>();
   verb->add_option("source", options->sources, "ROS 1 bags of one recording, or sim:SCENE?key=value&...")
       ->type_name("SOURCE...")
       ->required();

@@ -15,13 +15,13 @@
 namespace pllit::app {
 namespace {
 
-struct Options {
+struct EvalOptions {
   std::string truth, estimate, scene;
   EvaluationConfig evaluation;
   bool json = false;
 };
 
-Expected<Scores> scores_of(const Options& options) {
+Expected<Scores> scores_of(const EvalOptions& options) {
   const auto truth = read_tum(options.truth);
   if (!truth) return std::unexpected(truth.error());
   const auto estimate = read_tum(options.estimate);
@@ -52,7 +52,7 @@ std::string json_of(const Scores& scores) {
 }
 
 /// With --findings the one path that is given is a session.
-ExitCode run_findings(const Options& options) {
+ExitCode run_findings(const EvalOptions& options) {
   if (!options.estimate.empty()) return report(input_error("eval --findings takes one session, not two paths").error());
   const auto scores = score_session_findings(options.scene, options.truth, options.evaluation.alignment);
   if (!scores) return report(scores.error());
@@ -62,7 +62,7 @@ ExitCode run_findings(const Options& options) {
   return ExitCode::done;
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const EvalOptions& options) {
   if (!options.scene.empty()) return run_findings(options);
   const auto scores = scores_of(options);
   if (!scores) return report(scores.error());
@@ -74,7 +74,7 @@ ExitCode run(const Options& options) {
 
 Verb add_eval(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("eval", "Score an estimated trajectory, or findings, against the truth");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<EvalOptions>();
   verb->add_option("truth", options->truth, "True trajectory; with --findings the session")
       ->type_name("TRUTH.tum|SESSION")
       ->required();

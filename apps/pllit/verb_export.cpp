@@ -33,12 +33,12 @@ constexpr std::array<Format, 4> kFormats{{
      [](const fs::path& file, const Session& session) { return write_tum(file, session.trajectory); }},
 }};
 
-struct Options {
+struct ExportOptions {
   std::string session, format, out;
   bool overwrite = false;
 };
 
-Expected<fs::path> export_session(const Options& options) {
+Expected<fs::path> export_session(const ExportOptions& options) {
   const auto format = std::ranges::find(kFormats, options.format, &Format::name);
   const fs::path file = options.out.empty() ? fs::path(options.session) / format->default_file : fs::path(options.out);
   if (fs::exists(file) && !options.overwrite)
@@ -49,7 +49,7 @@ Expected<fs::path> export_session(const Options& options) {
   return file;
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const ExportOptions& options) {
   const auto file = export_session(options);
   if (!file) return report(file.error());
   std::puts(file->c_str());
@@ -60,7 +60,7 @@ ExitCode run(const Options& options) {
 
 Verb add_export(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("export", "Write a session's map or trajectory in another format");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportOptions>();
   verb->add_option("session", options->session, "Folder that a run has written")->type_name("SESSION")->required();
   std::vector<std::string> names;
   for (const Format& format : kFormats) names.emplace_back(format.name);

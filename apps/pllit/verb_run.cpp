@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct RunOptions {
   std::vector<std::string> sources, settings;
   std::string config, out, truth;
   bool json = false, events = false, alarm_exit = false;
@@ -57,7 +57,7 @@ FrameSink with_loops(FrameSink sink, LoopStage& loops) {
   };
 }
 
-nlohmann::ordered_json run_json(const RunSummary& summary, const Options& options, const Config& config,
+nlohmann::ordered_json run_json(const RunSummary& summary, const RunOptions& options, const Config& config,
                                 const char* status) {
   nlohmann::ordered_json json = summary_json(summary);
   json["status"] = status;
@@ -79,15 +79,15 @@ Expected<void> add_scores(nlohmann::ordered_json& json, const Trajectory& truth,
   return {};
 }
 
-Expected<Trajectory> truth_of(const Options& options, const OpenedSource& source) {
+Expected<Trajectory> truth_of(const RunOptions& options, const OpenedSource& source) {
   if (options.truth.empty()) return source.truth;
   return read_tum(options.truth);
 }
 
 class SessionRun {
  public:
-  SessionRun(const Options& options, const Config& config, OpenedSource source, Trajectory truth, SessionWriter session,
-             std::stop_token stop)
+  SessionRun(const RunOptions& options, const Config& config, OpenedSource source, Trajectory truth,
+             SessionWriter session, std::stop_token stop)
       : options_(options),
         config_(config),
         source_(std::move(source)),
@@ -190,7 +190,7 @@ class SessionRun {
                stdout);
   }
 
-  const Options& options_;
+  const RunOptions& options_;
   const Config& config_;
   OpenedSource source_;
   Trajectory truth_;
@@ -204,7 +204,7 @@ class SessionRun {
   std::optional<SessionHeat> heat_;  // once written
 };
 
-Expected<ExitCode> run_session(const Options& options) {
+Expected<ExitCode> run_session(const RunOptions& options) {
   const auto config = read_config(options.config, options.settings);
   if (!config) return std::unexpected(config.error());
   const Interrupt interrupt;  // before a source starts threads
@@ -223,7 +223,7 @@ Expected<ExitCode> run_session(const Options& options) {
   return SessionRun(options, *config, std::move(*source), std::move(*truth), std::move(*session), interrupt.token())();
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const RunOptions& options) {
   const auto code = run_session(options);
   return code ? *code : report(code.error());
 }
@@ -232,7 +232,7 @@ ExitCode run(const Options& options) {
 
 Verb add_run(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("run", "Estimate trajectory and map from a recording or a simulation");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   verb->add_option("source", options->sources, "ROS 1 bags of one recording, or sim:SCENE?key=value&...")
       ->type_name("SOURCE...")
       ->required();

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SimulateOptions {
   std::string scene, out, frames;
   std::optional<std::uint64_t> seed;
   std::optional<double> duration_s;
@@ -87,7 +87,7 @@ class Recorder {
   int jpeg_;
 };
 
-std::string address_of(const Options& options) {
+std::string address_of(const SimulateOptions& options) {
   std::string address = options.scene.starts_with("sim:") ? options.scene : "sim:" + options.scene;
   const auto add = [&](const std::string& assignment) { address += (address.contains('?') ? "&" : "?") + assignment; };
   if (options.seed) add(std::format("seed={}", *options.seed));
@@ -137,11 +137,11 @@ Expected<void> record(Simulation& simulation, Outputs& outputs, const std::stop_
   return failure("interrupted; what was made so far is kept, without a scene file");
 }
 
-fs::path beside(const Options& options, const char* extension) {
+fs::path beside(const SimulateOptions& options, const char* extension) {
   return fs::path(options.out).replace_extension(extension);
 }
 
-Expected<void> open_outputs(const Options& options, const Simulation& simulation, Outputs& outputs) {
+Expected<void> open_outputs(const SimulateOptions& options, const Simulation& simulation, Outputs& outputs) {
   if (!options.frames.empty()) {
     const auto wanted = [&](const char* what) { return std::ranges::contains(options.truth, what); };
     const FrameChoice choice{.every = options.every,
@@ -161,7 +161,7 @@ Expected<void> open_outputs(const Options& options, const Simulation& simulation
   return write_biases(beside(options, ".biases.csv"), simulation.true_biases());
 }
 
-Expected<ExitCode> simulate(const Options& options) {
+Expected<ExitCode> simulate(const SimulateOptions& options) {
   if (!options.out.empty() && fs::exists(options.out) && !options.overwrite)
     return input_error(std::format("'{}' exists; give another name with --out, or --overwrite", options.out));
   const std::string address = address_of(options);
@@ -208,7 +208,7 @@ void print_list_json() {
   std::puts(json.dump(2).c_str());
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const SimulateOptions& options) {
   if (options.list) {
     options.json ? print_list_json() : print_list();
     return ExitCode::done;
@@ -225,7 +225,7 @@ ExitCode run(const Options& options) {
 Verb add_simulate(CLI::App& program) {
   CLI::App* verb =
       program.add_subcommand("simulate", "Write a simulated recording as a ROS 1 bag, with the truth beside it");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateOptions>();
   verb->add_option("scene", options->scene, "Scene, row of the table of sequences, or sim:SCENE?key=value&...")
       ->type_name("SCENE");
   verb->add_option("--out", options->out, "Bag to write; F.tum, F.biases.csv and F.scene.json come beside it")

@@ -10,7 +10,7 @@
 namespace pllit {
 namespace {
 
-constexpr std::size_t kPointBytes = 19;
+constexpr std::size_t kLivoxPointBytes = 19;
 constexpr std::int64_t kLongestScan_ns = 1'000'000'000;
 
 struct CustomPoint {
@@ -68,11 +68,11 @@ Expected<DecodedScan> decode_livox_custom_msg(Bytes message) {
   const auto point_num = reader.read<std::uint32_t>();
   reader.skip(4);  // lidar_id and 3 reserved bytes
   const std::size_t count = reader.read<std::uint32_t>();
-  if (!reader.ok() || count != point_num || reader.remaining() != count * kPointBytes) {
+  if (!reader.ok() || count != point_num || reader.remaining() != count * kLivoxPointBytes) {
     return input_error(
         std::format("Livox CustomMsg of {} bytes is cut short or laid out differently (it announces {} and "
                     "{} points of {} bytes, {} bytes are there)",
-                    message.size(), point_num, count, kPointBytes, reader.remaining()));
+                    message.size(), point_num, count, kLivoxPointBytes, reader.remaining()));
   }
   TimedPoints points = read_points(reader, count, decoded.dropped);
   decoded.scan.start = decoded.header_stamp;

@@ -51,4 +51,7 @@ class Random {
   bool has_spare_ = false;
 };
 
+/// Uniform in [low, high), as meshes hold their numbers.
+inline float between(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
+
 }  // namespace pllit

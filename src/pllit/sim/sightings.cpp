@@ -6,7 +6,7 @@
 namespace pllit {
 namespace {
 
-constexpr double kReach_m = 15.0;
+constexpr double kFarthest_m = 15.0;
 
 struct Window {
   int left, top, right, bottom;  // inclusive
@@ -17,7 +17,7 @@ std::optional<Window> window_of(const Actor& actor, const Camera& camera, const 
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector3f& vertex : actor.mesh_O.vertices) {
     const Vector3d p_C = T_C_O.act(vertex.cast<double>());
-    if (p_C.norm() > kReach_m) return std::nullopt;
+    if (p_C.norm() > kFarthest_m) return std::nullopt;
     if (const auto pixel = camera.project(p_C)) box.extend(*pixel);
   }
   if (box.isEmpty()) return std::nullopt;

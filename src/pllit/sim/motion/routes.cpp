@@ -9,7 +9,7 @@
 namespace pllit {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kHeight_m = 1.3;
 
 /// Height of a foot s metres along a flight of stairs: each step is climbed in the middle half of its going, which
@@ -27,12 +27,12 @@ double climbed_m(const Stairs& stairs, double s) {
 Foothold on_stairs(const Stairs& stairs, double s) {
   if (s < 0.0) return {{s - stairs.landing_m, 0.0, 0.0}, 0.0};
   const double flight_m = stairs.flight_run_m() + 2.0 * stairs.landing_m;
-  const double turn_m = 0.5 * kPi * stairs.well_m;
+  const double turn_m = 0.5 * pi * stairs.well_m;
   const int flight = std::min(static_cast<int>(s / (flight_m + turn_m)), stairs.flights - 1);
   const double on_flight = s - flight * (flight_m + turn_m);
   const bool outward = flight % 2 == 0;
   const double start_x = outward ? -stairs.landing_m : stairs.flight_run_m() + stairs.landing_m;
-  const PlanePose start{{start_x, outward ? 0.0 : stairs.well_m}, flight * kPi};
+  const PlanePose start{{start_x, outward ? 0.0 : stairs.well_m}, flight * pi};
   const bool last = flight == stairs.flights - 1;
   PlanePose at = along_arc(start, 0.0, last ? on_flight : std::min(on_flight, flight_m));
   // All turns go to the left: two flights and two landings make one round of the stairwell.
@@ -53,19 +53,19 @@ Motion inspection_walk(const InspectionWalk& config) {
                                         .duration_s = 2.0 + 1.0 + length_m / config.speed_mps,
                                         .rest_s = 2.0,
                                         .speed_mps = config.speed_mps,
-                                        .glance_rad = 50.0 * kPi / 180.0});
+                                        .glance_rad = 50.0 * pi / 180.0});
 }
 
 Motion corridor_walk(const CorridorWalk& config) {
   constexpr double kTurn_m = 0.5;
   const auto way = [&](double s) {
-    const double turn_m = kPi * kTurn_m;
+    const double turn_m = pi * kTurn_m;
     PlanePose at = along_arc({}, 0.0, std::min(s, config.length_m));
     if (s > config.length_m) at = along_arc(at, 1.0 / kTurn_m, std::min(s - config.length_m, turn_m));
     if (s > config.length_m + turn_m) at = along_arc(at, 0.0, s - config.length_m - turn_m);
     return Foothold{{at.position.x(), at.position.y(), 0.0}, at.heading_rad};
   };
-  return walk_way(way, 2.0 * config.length_m + kPi * kTurn_m, kHeight_m,
+  return walk_way(way, 2.0 * config.length_m + pi * kTurn_m, kHeight_m,
                   {.seed = config.seed, .speed_mps = config.speed_mps});
 }
 
@@ -73,7 +73,7 @@ Motion stair_climb(const StairClimb& config) {
   const Stairs& stairs = config.stairs;
   const double flight_m = stairs.flight_run_m() + 2.0 * stairs.landing_m;
   const double length_m =
-      2.0 * stairs.level_m + stairs.flights * flight_m + (stairs.flights - 1) * 0.5 * kPi * stairs.well_m;
+      2.0 * stairs.level_m + stairs.flights * flight_m + (stairs.flights - 1) * 0.5 * pi * stairs.well_m;
   return walk_way([&](double s) { return on_stairs(stairs, s - stairs.level_m); }, length_m, kHeight_m,
                   {.seed = config.seed, .speed_mps = config.speed_mps, .glance_rad = 0.2});
 }

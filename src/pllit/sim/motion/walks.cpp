@@ -11,7 +11,7 @@
 namespace pllit {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kSpacing_s = 0.1;  // of the controls: steps at 2 Hz survive, what is faster is smoothed away
 constexpr double kRamp_s = 1.5;     // from rest to full motion
 constexpr Time kStart = time_from_parts(1'700'000'000, 0);  // any real date, so that lost digits of a time would show
@@ -24,12 +24,12 @@ double ramp(double x) {
 
 struct Wave {
   double amplitude, frequency_hz, phase;
-  double at(double t_s) const { return amplitude * std::sin(2.0 * kPi * frequency_hz * t_s + phase); }
+  double at(double t_s) const { return amplitude * std::sin(2.0 * pi * frequency_hz * t_s + phase); }
 };
 
 Wave random_wave(double amplitude, double frequency_hz, Random& random) {
   const double scale = random.uniform(0.9, 1.1);
-  return {amplitude, frequency_hz * scale, random.uniform(0.0, 2.0 * kPi)};
+  return {amplitude, frequency_hz * scale, random.uniform(0.0, 2.0 * pi)};
 }
 
 /// The point `s` metres along the centre line, counter-clockwise from the middle of the side at negative y.
@@ -41,7 +41,7 @@ PlanePose lane_point(const Lane& lane, double s) {
     at.position += std::min(s, straight_m) * direction(at.heading_rad);
     s -= straight_m;
     if (s <= 0.0) return at;
-    const double turn = std::min(s / lane.corner_radius_m, 0.5 * kPi);
+    const double turn = std::min(s / lane.corner_radius_m, 0.5 * pi);
     at.position += lane.corner_radius_m * (left_of(at.heading_rad) - left_of(at.heading_rad + turn));
     at.heading_rad += turn;
     s -= turn * lane.corner_radius_m;
@@ -80,7 +80,7 @@ Motion ramped_motion(const MotionConfig& config, const PoseAt& pose_at) {
 struct Gait {
   Gait(double glance_rad, Random& random) {
     const double wiggle_length_m = random.uniform(5.0, 8.0);
-    aside = {0.2, 1.0 / wiggle_length_m, random.uniform(0.0, 2.0 * kPi)};
+    aside = {0.2, 1.0 / wiggle_length_m, random.uniform(0.0, 2.0 * pi)};
     pace = random_wave(0.15, 0.11, random);
     glance = random_wave(glance_rad, 0.07, random), look_up = random_wave(0.06, 0.13, random);
     sway = random_wave(0.045, 0.9, random), nod = random_wave(0.035, 1.8, random);
@@ -102,7 +102,7 @@ struct Gait {
 }  // namespace
 
 double perimeter_m(const Lane& lane) {
-  return 2.0 * (lane.straight_x_m + lane.straight_y_m + kPi * lane.corner_radius_m);
+  return 2.0 * (lane.straight_x_m + lane.straight_y_m + pi * lane.corner_radius_m);
 }
 
 Motion walk_along(const Lane& lane, const MotionConfig& config) {

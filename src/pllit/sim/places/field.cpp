@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3f;
 
 constexpr double kTile_m = 60.0;
-constexpr double kReach_m = 130.0;  // land on either side of the path
+constexpr double kAside_m = 130.0;  // land on either side of the path
 constexpr int kCells = 20;          // a tile's side
 
 struct Wave {
@@ -39,8 +39,6 @@ struct Field {
     return ground.z(p) + share * share * (3.0 - 2.0 * share) * hills_m;
   }
 };
-
-float between(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
 
 Mesh ground_of(const Field& field, const Vector3d& origin) {
   const float side = static_cast<float>(kTile_m);
@@ -123,8 +121,8 @@ std::vector<std::pair<int, int>> cells_along(const Site& site) {
   const auto cell = [](double v) { return static_cast<int>(std::floor(v / kTile_m)); };
   for (std::size_t i = 0; i < site.path_P.points().size(); i += 20) {
     const Vector3d& p = site.path_P.points()[i];
-    for (int x = cell(p.x() - kReach_m); x <= cell(p.x() + kReach_m); ++x)
-      for (int y = cell(p.y() - kReach_m); y <= cell(p.y() + kReach_m); ++y) cells[{x, y}] = true;
+    for (int x = cell(p.x() - kAside_m); x <= cell(p.x() + kAside_m); ++x)
+      for (int y = cell(p.y() - kAside_m); y <= cell(p.y() + kAside_m); ++y) cells[{x, y}] = true;
   }
   std::vector<std::pair<int, int>> sorted;
   for (const auto& [key, used] : cells) sorted.push_back(key);

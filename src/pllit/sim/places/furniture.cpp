@@ -1,16 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "pllit/sim/places/shapes.hpp"
 
 namespace pllit::shapes {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
-
-float between(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
 
 Material one_of(std::span<const Material> materials, Random& random) {
   return materials[static_cast<std::size_t>(random.uniform() * static_cast<double>(materials.size()))];

@@ -8,10 +8,6 @@
 namespace pllit::shapes {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
-float between(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
-
 /// What stands along z lies along y.
 Mesh lying(Mesh mesh) {
   return moved(std::move(mesh), Eigen::Isometry3f(Eigen::AngleAxisf(-0.5F * kPi, Vector3f::UnitX())));

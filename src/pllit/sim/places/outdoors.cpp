@@ -1,16 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "pllit/sim/places/shapes.hpp"
 
 namespace pllit::shapes {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
-
-float between(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
 
 /// Leaves, each a small quad, spread over the outer part of an ellipsoid: a LiDAR sees some volume, not a shell.
 Mesh crown(const Vector3f& centre, const Vector3f& radii, int leaf_count, float leaf, Random& random) {

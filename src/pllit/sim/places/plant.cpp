@@ -17,7 +17,6 @@ using shapes::panel;
 
 constexpr double kBay_m = 6.0;
 
-float between(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
 Vector3f point(const Vector2d& p, double z) { return Eigen::Vector3d(p.x(), p.y(), z).cast<float>(); }
 
 struct Hall {

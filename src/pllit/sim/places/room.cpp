@@ -14,8 +14,6 @@ using Eigen::Vector2d;
 using shapes::at;
 using shapes::box;
 
-float between(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
-
 struct Piece {
   Mesh mesh;
   double depth_m, width_m, height_m;  ///< x, y, z

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <numbers>
 #include <span>
 
 #include "pllit/sim/places/surfaces.hpp"
@@ -12,6 +13,8 @@ namespace pllit::shapes {
 
 using Eigen::Vector2f;
 using Eigen::Vector3f;
+
+constexpr float kPi = std::numbers::pi_v<float>;
 
 /// What a piece is made of, and how much warmer it is than others of its kind.
 struct Finish {

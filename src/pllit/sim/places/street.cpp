@@ -21,8 +21,6 @@ constexpr double kFront_m = 9.3;     // where houses start
 constexpr double kLand_m = 45.0;     // to where there is land beside a street
 constexpr double kCell_m = 5.0;
 
-float between(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
-
 /// All that a tile is made from; shared by every tile.
 struct Street {
   PlaceConfig config;

@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kOffPath_m = 1.6;
+constexpr double kOffLane_m = 1.6;
 constexpr double kCarHalf_m = 2.35;  // of its length: on a bend it swings out
 
 struct Mover {
@@ -27,7 +27,7 @@ std::vector<Vector3d> stretch(const Mover& mover, const Site& site, const Street
   std::vector<Vector3d> way;
   for (std::size_t i = start; i <= street->last && way.size() < mover.longest; ++i) {
     const Vector2d p = stations[i].p + mover.aside_m * stations[i].left;
-    const double needed_m = kOffPath_m + mover.half_m;
+    const double needed_m = kOffLane_m + mover.half_m;
     if (site.path_P.nearest(p, needed_m).distance_m < needed_m) break;
     way.emplace_back(p.x(), p.y(), ground.z(p) + mover.above_m);
   }
@@ -45,7 +45,7 @@ std::vector<Actor> street_traffic(const PlaceConfig& config, const Site& site, c
     int count = 0;
     for (int attempt = 0; attempt < 60 * wanted && count < wanted; ++attempt) {
       Mover chosen = mover;
-      if (mover.aside_m > kOffPath_m + 4.0 && random.uniform() < 0.5) chosen.aside_m = -mover.aside_m;
+      if (mover.aside_m > kOffLane_m + 4.0 && random.uniform() < 0.5) chosen.aside_m = -mover.aside_m;
       auto way = stretch(chosen, site, line, ground, random);
       if (way.size() < shortest) continue;
       std::ranges::reverse(way);  // against the path

@@ -1,15 +1,10 @@
 #include "pllit/sim/world/lidar_models.hpp"
 
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace pllit {
-namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-}  // namespace
+namespace {}  // namespace
 
 RayLidar without_errors(RayLidar lidar) {
   lidar.min_range_m = lidar.range_sigma_m = lidar.range_step_m = lidar.beam_sigma_rad = 0.0;

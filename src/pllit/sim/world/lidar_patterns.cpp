@@ -8,7 +8,6 @@
 namespace pllit {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 using Laser = BeamPattern::Laser;

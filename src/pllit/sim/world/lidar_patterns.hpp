@@ -3,12 +3,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "pllit/base/time.hpp"
 #include "pllit/geometry/lie.hpp"
 
 namespace pllit {
+
+constexpr double kDegree = std::numbers::pi / 180.0;  ///< data sheets speak of degrees
 
 /// One pulse of a scan. L: x forward, y left, z up.
 struct Beam {
