@@ -9,6 +9,7 @@
 project_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 environment_root=${PLLIT_ENV:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/pllit/debian13}
 package_lists=("$project_root/packages.txt")
+[ "${PLLIT_TEST:-}" = 1 ] && package_lists+=("$project_root/packages-test.txt")
 [ "${PLLIT_TRAIN:-}" = 1 ] && package_lists+=("$project_root/packages-train.txt")
 # Directories of the machine that stay hidden inside the root, because Debian 13 brings its own.
 own_directories='usr|bin|sbin|lib.*|etc|var|boot|proc|dev|sys|lost\+found'
@@ -95,7 +96,7 @@ make_root() {
 
 ensure_root() {
   local stamp
-  stamp=$environment_root/.pllit-packages-$(packages_digest) # one for each list, so that calls with and without training's alternate freely
+  stamp=$environment_root/.pllit-packages-$(packages_digest) # one for each list, so that calls that want more or less alternate freely
   [ -e "$stamp" ] && return
   need_root "Making the Debian 13 environment on this machine"
   mkdir -p "$(dirname "$environment_root")"

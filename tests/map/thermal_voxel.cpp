@@ -84,6 +84,15 @@ TEST(ThermalVoxel, DoesNotTakeHeatForNormalHoweverLongItLasts) {
   EXPECT_NEAR(static_cast<double>(shown.voxel.changed_mean), 150.0, 4.0);
 }
 
+TEST(ThermalVoxel, IsAtPresentWhatSeveralImagesShowAndNotOneOddOne) {
+  Shown shown;
+  for (int i = 0; i < 40; ++i) shown(100.0);
+  shown(200.0);
+  EXPECT_NEAR(static_cast<double>(shown.voxel.present()), 100.0, 1.0);
+  shown(200.0), shown(200.0);
+  EXPECT_NEAR(static_cast<double>(shown.voxel.present()), 200.0, 1.0);
+}
+
 TEST(ThermalVoxel, CallsHotOnlyWhatSeveralImagesShow) {
   Shown shown;
   for (int i = 0; i < 40; ++i) shown(100.0);

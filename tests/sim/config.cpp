@@ -107,6 +107,8 @@ TEST(SimulationText, RefusesWhatDoesNotGoTogetherAndSaysWhy) {
   EXPECT_THAT(error_of("sim:room?cars=2"), HasSubstr("needs a street"));
   EXPECT_THAT(error_of("sim:room?bare=1"), HasSubstr("needs a corridor"));
   EXPECT_THAT(error_of("sim:room?way=mirrored"), HasSubstr("needs motion=FILE"));
+  EXPECT_THAT(error_of("sim:street?visit=1"), HasSubstr("needs a room or a plant"));
+  EXPECT_THAT(error_of("sim:room?visit=1&motion=walk.tum"), HasSubstr("no motion=FILE"));
   EXPECT_THAT(error_of("sim:plant?finding=pipe&finding_at=50&duration=40"), HasSubstr("lies beyond"));
 }
 

@@ -115,6 +115,30 @@ TEST(SimulatedWorlds, TellWhatIsToBeFoundAndWhenItCouldBeSeen) {
   EXPECT_NE(json["T_I_C"]["known"], json["T_I_C"]["true"]);
 }
 
+TEST(SimulatedWorlds, AreVisitedAgainOnAnotherWalk) {
+  const std::string place =
+      "sim:room?rig=inspection&finding=table&finding_at=0&seed=1&duration=3&images=counts&image_rate=1";
+  auto first = open_simulation(place), again = open_simulation(place + "&visit=1"),
+       warmer = open_simulation(place + "&visit=1&warmer_K=10");
+  ASSERT_TRUE(first && again && warmer);
+  EXPECT_EQ(first->rig().T_I_C.coeffs(), again->rig().T_I_C.coeffs()) << "the rig is the same one";
+  const auto way_m = (first->truth().back().T_W_I.translation() - again->truth().back().T_W_I.translation()).norm();
+  EXPECT_GT(way_m, 0.5);
+  const auto before = first->scene_truth().objects, now = again->scene_truth().objects;
+  ASSERT_EQ(before.size(), now.size());
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    EXPECT_EQ(before[i].name, now[i].name);
+    EXPECT_LT((before[i].centroid_W - now[i].centroid_W).norm(), 0.3) << "seen from elsewhere";
+  }
+  const auto first_image = [](Simulation& simulation) {
+    const Tally tally = drained(simulation);
+    for (const SensorEvent& event : tally.events)
+      if (const auto* frame = std::get_if<CameraFrame>(&event.data)) return cv::mean(frame->counts)[0];
+    return 0.0;
+  };
+  EXPECT_GT(first_image(*warmer), first_image(*again) + 50.0);
+}
+
 TEST(SimulatedWorlds, AreKnownExactlyOnlyWhereTheyAreIdeal) {
   auto ideal = open_simulation("sim:room?duration=3&ideal=1&images=none");
   ASSERT_TRUE(ideal);

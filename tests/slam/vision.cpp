@@ -88,6 +88,18 @@ TEST(Vision, LeavesTheTrajectoryOfBlankImagesAsItIsWithoutAny) {
     EXPECT_LT((with[i].T_W_I.translation() - without[i].T_W_I.translation()).norm(), 1e-9);
 }
 
+TEST(Vision, SeesExplicitLinesOfTheMapAgain) {
+  Config config, without_lines;
+  without_lines.vision.residuals.lines = false;
+  const auto with = test::run_simulation("sim:room?rig=hilti2022&duration=10&seed=6", config),
+             without = test::run_simulation("sim:room?rig=hilti2022&duration=10&seed=6", without_lines);
+  ASSERT_TRUE(with.result && without.result);
+  const auto sees_lines = [](const FrameEstimate& frame) { return frame.facts.image.lines > 2; };
+  EXPECT_GT(std::ranges::count_if(with.frames, sees_lines), std::ssize(with.frames) / 4);
+  EXPECT_EQ(std::ranges::count_if(without.frames, sees_lines), 0);
+  EXPECT_LT(error_m(with), std::max(1.2 * error_m(without), 0.02));
+}
+
 TEST(Vision, RefusesImagesOfAnotherSizeThanCalibrated) {
   auto simulation = open_simulation("sim:room?rig=hilti2022&duration=3&seed=6");
   Rig rig = simulation->rig();

@@ -104,6 +104,25 @@ TEST(PhotometricChain, StartsAgainFromTheGreysOfTheImageBeforeTheShutter) {
   EXPECT_EQ(restarted({}, before).curve.gain, 1.0) << "nothing to start from";
 }
 
+TEST(PhotometricChain, TakesTheGreysOfALaterImageWhereThoseOfTheFirstAreFarOff) {
+  PhotometricChain chain;  // the first image is four times as dark as later ones
+  std::vector<Keyframe> window{keyframe_of(raw_image(4.0, 0.0, 1), chain.curve)};
+  const cv::Mat later = raw_image(1.0, 0.0, 2);
+  const auto step = [&](const cv::Mat& raw) {
+    const cv::Mat around = greys_around(raw, grid());
+    return advanced(chain, raw, around, all_matched(window.size()), window, {}).chain;
+  };
+  chain = step(later);
+  ASSERT_NEAR(chain.curve.gain, 0.25, 0.03) << "it squeezes the good image to the greys of the poor one";
+  chain = in_fresh_greys(chain, window, {});
+  EXPECT_EQ(chain.curve.gain, 1.0);
+  EXPECT_EQ(chain.curve.bias, 0.0);
+  chain = step(raw_image(1.0, 0.0, 3));
+  EXPECT_LT(worst(chain.curve, 1.0, 0.0), 4.0) << "and the window tells the same of the next one";
+  const auto unchanged = in_fresh_greys(chain, window, {});
+  EXPECT_EQ(unchanged.curve.gain, chain.curve.gain);
+}
+
 TEST(PhotometricChain, UsesNoMoreGreysThanAskedAndNoneThatAreMissing) {
   const cv::Mat raw = raw_image(1.0, 0.0, 1), around = greys_around(raw, grid());
   std::vector<Keyframe> window{keyframe_of(raw, {}), Keyframe{}};

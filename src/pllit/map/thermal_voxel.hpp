@@ -63,8 +63,8 @@ struct ThermalVoxel {
   /// Standard deviation of what is normal, with the doubts of calibration and saturation; at least the configured
   /// noise, and more where few images showed it.
   float sigma(const VoxelModelConfig& config) const;
-  /// What is to be expected now: the short-term mean while something has changed, else the normal one.
-  float present() const { return changes > 0 ? changed_mean : mean; }
+  /// What is to be expected now: the short-term mean once several images have shown a change, else the normal one.
+  float present() const { return changes >= 3 ? changed_mean : mean; }
 };
 
 /// The voxel after one more image.

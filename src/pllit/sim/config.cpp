@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "pllit/base/words.hpp"
+#include "pllit/sim/random.hpp"
 
 namespace pllit {
 namespace {
@@ -165,6 +166,8 @@ std::vector<Key> world_keys() {
           {{"drawn", C::Arrival::drawn}, {"heated", C::Arrival::heated}, {"brought", C::Arrival::brought}}),
       number_key("finding_at", For::worlds, PLLIT_FIELD(finding_at_s), 0.0, 36000.0, "seconds"),
       number_key("finding_K", For::worlds, PLLIT_FIELD(finding_K), 0.5, 300.0, "kelvin"),
+      count_key("visit", &C::visit, 1000),
+      number_key("warmer_K", For::worlds, PLLIT_FIELD(warmer_K), -60.0, 60.0, "kelvin"),
   };
 }
 
@@ -233,12 +236,18 @@ std::optional<std::string> contradiction(const SimConfig& config) {
     return std::format("finding_at={} lies beyond duration={}", config.finding_at_s, *config.duration_s);
   if (config.bare && config.scene != SceneKind::corridor) return "bare= needs a corridor";
   if (config.cars > 0 && config.scene != SceneKind::street) return "cars= needs a street";
+  if (config.visit > 0 && !(inside && config.motion.empty()))
+    return "visit= needs a room or a plant, and no motion=FILE: it is another walk of the inspection's lane";
   if (config.motion.empty() && config.way != SimConfig::Way::as_recorded) return "way= needs motion=FILE";
   if (config.motion.empty() && config.speedup != 1.0) return "speedup= needs motion=FILE";
   return std::nullopt;
 }
 
 }  // namespace
+
+std::uint64_t visit_seed(const SimConfig& config) {
+  return config.visit == 0 ? config.seed : Random(config.seed, 5000 + static_cast<std::uint64_t>(config.visit)).bits();
+}
 
 bool is_box(SceneKind scene) {
   return scene == SceneKind::box_room || scene == SceneKind::box_corridor || scene == SceneKind::box_street;

@@ -78,7 +78,12 @@ struct SimConfig {
   Finding finding = Finding::none;
   Arrival arrival = Arrival::drawn;
   double finding_at_s = 40.0, finding_K = 25.0;
+  int visit = 0;          ///< of the same place and rig: from 1 on, another walk and other noise than on the first
+  double warmer_K = 0.0;  ///< air and everything in it, than on the first visit
 };
+
+/// Of what differs from visit to visit: the walk, noise, vibration.
+std::uint64_t visit_seed(const SimConfig& config);
 
 bool is_box(SceneKind scene);
 std::string_view name_of(SceneKind scene);

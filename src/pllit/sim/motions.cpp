@@ -35,7 +35,7 @@ Motion upright_motion(const SimConfig& config) {
     case SceneKind::stairs:
       return stair_climb({.seed = config.seed, .stairs = {.level_m = config.length_m.value_or(0.0)}});
     default:
-      return inspection_walk({.seed = config.seed});
+      return inspection_walk({.seed = visit_seed(config)});
   }
 }
 
@@ -66,8 +66,8 @@ Expected<ChosenMotion> choose_motion(const SimConfig& config, const SimRig& rig,
                                      const std::optional<Trajectory>& path) {
   auto chosen = calm_motion(config, rig, path);
   if (chosen && !config.ideal)
-    chosen->motion =
-        chosen->motion.with_vibration(rig.on_car ? vehicle_vibration(config.seed) : hand_held_vibration(config.seed));
+    chosen->motion = chosen->motion.with_vibration(rig.on_car ? vehicle_vibration(visit_seed(config))
+                                                              : hand_held_vibration(visit_seed(config)));
   return chosen;
 }
 

@@ -17,16 +17,18 @@ namespace pllit {
 struct Simulation::Parts {
   Parts(const SimConfig& c, ChosenMotion chosen, SimRig known_rig, SimRig built_rig)
       : config(c),
+        seed(visit_seed(c)),
         known(std::move(known_rig)),
         built(std::move(built_rig)),
         rig(known.known()),
         motion(std::move(chosen.motion)),
         fit(chosen.distance),
         end(std::min(motion.end(), motion.start() + from_seconds(c.duration_s.value_or(1e6)))),
-        line(c.faults, motion.start(), c.seed),
+        line(c.faults, motion.start(), seed),
         delivered_until(motion.start()) {}
 
   SimConfig config;
+  std::uint64_t seed;   // of noise
   SimRig known, built;  // of boxes: the IMU's model alone
   Rig rig;
   Motion motion;
@@ -40,7 +42,7 @@ struct Simulation::Parts {
   FaultyLine line;
   Time delivered_until;
 
-  ImuStream fresh_imu() const { return ImuStream(motion.start(), built.imu, config.seed); }
+  ImuStream fresh_imu() const { return ImuStream(motion.start(), built.imu, seed); }
 
   SimSensor& first_due() const {
     return **std::ranges::min_element(sensors, {}, [](const auto& sensor) { return sensor->due(); });
@@ -105,6 +107,7 @@ PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motio
   place.duration_s = to_seconds(motion.end() - motion.start());
   place.height_m = rig.height_m;
   place.clearance_m = rig.on_car ? 2.5 : 0.6;
+  place.warmer_K = config.warmer_K;
   place.light = config.day ? Light::day : Light::night;
   place.bare = config.bare;
   place.people = config.people;
@@ -146,27 +149,27 @@ void furnish_boxes(Parts& parts, BoxScene scene) {
   parts.rig = scene.rig;
   parts.boxes = std::move(scene.world);
   parts.sensors.push_back(imu_sensor(parts.motion, parts.fresh_imu(), parts.config.accel_in_g));
-  parts.sensors.push_back(box_lidar_sensor(parts.motion, scene.lidar, *parts.boxes, parts.config.seed));
+  parts.sensors.push_back(box_lidar_sensor(parts.motion, scene.lidar, *parts.boxes, parts.seed));
 }
 
-/// The place around the motion, and the rig's sensors in it.
+/// The place around the first visit's motion, and the rig's sensors in it.
 template <class Parts>
-Expected<void> furnish_world(Parts& parts) {
-  auto place = make_place(place_config(parts.config, parts.known, parts.motion));
+Expected<void> furnish_world(Parts& parts, const Motion& first) {
+  auto place = make_place(place_config(parts.config, parts.known, first));
   if (!place) return std::unexpected(place.error());
   parts.around.emplace(std::move(*place), kReach_m);
   parts.sightings.emplace(parts.around->place.get());
   const SimConfig& config = parts.config;
   parts.sensors.push_back(imu_sensor(parts.motion, parts.fresh_imu(), parts.built.accel_in_g));
-  if (config.scans) parts.sensors.push_back(lidar_sensor(parts.motion, parts.built, *parts.around, config.seed));
+  if (config.scans) parts.sensors.push_back(lidar_sensor(parts.motion, parts.built, *parts.around, parts.seed));
   if (config.images == SimConfig::Images::none) return {};
   const ImageStream stream{.rate_hz = config.image_rate_hz,
                            .agc = config.images != SimConfig::Images::counts,
                            .counts = config.images != SimConfig::Images::agc,
                            .ideal = config.ideal};
   auto camera = parts.built.thermal
-                    ? thermal_sensor(parts.motion, parts.built, stream, *parts.around, config.seed, *parts.sightings)
-                    : visible_sensor(parts.motion, parts.built, stream, *parts.around, config.seed);
+                    ? thermal_sensor(parts.motion, parts.built, stream, *parts.around, parts.seed, *parts.sightings)
+                    : visible_sensor(parts.motion, parts.built, stream, *parts.around, parts.seed);
   parts.camera = camera.get();
   parts.sensors.push_back(std::move(camera));
   return {};
@@ -194,8 +197,17 @@ Expected<Simulation> Simulation::make(const SimConfig& config, const std::option
   auto motion = choose_motion(config, known, path);
   if (!motion) return std::unexpected(motion.error());
   SimRig built = config.ideal ? without_errors(known) : as_built(known, config.seed);
+  std::optional<ChosenMotion> first;  // where it is not this one
+  if (config.visit > 0) {
+    SimConfig first_visit = config;
+    first_visit.visit = 0;
+    auto chosen = choose_motion(first_visit, known, path);
+    if (!chosen) return std::unexpected(chosen.error());
+    first = std::move(*chosen);
+  }
   auto parts = std::make_unique<Parts>(config, std::move(*motion), std::move(known), std::move(built));
-  if (auto furnished = furnish_world(*parts); !furnished) return std::unexpected(furnished.error());
+  if (auto furnished = furnish_world(*parts, first ? first->motion : parts->motion); !furnished)
+    return std::unexpected(furnished.error());
   return Simulation(std::move(parts));
 }
 

@@ -55,8 +55,6 @@ void list(Section section, PlaneMapConfig& config) {
   section.add(PLLIT_KEY(voxel_m),
               "Voxel of the LiDAR map (planes span two of them): 0.4 serves most places, 0.2 narrow rooms.", "m",
               {0.05, 10.0});
-  section.add(PLLIT_KEY(radius_m), "How far around the rig the map for matching reaches; older parts are forgotten.",
-              "m", {5.0, 2000.0});
 }
 
 void list_noise(Section section, RigConfig& rig) {
@@ -75,6 +73,8 @@ void list_noise(Section section, RigConfig& rig) {
 }
 
 void list_details(Section section, PlaneMapConfig& config) {
+  section.add(PLLIT_KEY(radius_m), "How far around the rig the map for matching reaches; older parts are forgotten.",
+              "m", {5.0, 2000.0});
   section.add(PLLIT_KEY(memory_mb), "Most memory that the map for matching may take; beyond it the radius shrinks.",
               "MB", {16.0, 1048576.0});
   section.add(PLLIT_KEY(coarse_factor),

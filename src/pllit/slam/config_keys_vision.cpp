@@ -7,6 +7,7 @@ void list_thermal(Section section, VisionConfig& config) {
   section.add_switch(PLLIT_KEY(enabled), "Refine the LiDAR's pose with the images, thermal or visible.");
   section.add_switch(PLLIT_KEY(photometric), "Calibrate the greys of 8-bit images against gain control.");
   section.add_switch("weights", config.residuals.weights, "Give points on matched lines more weight.");
+  section.add_switch("lines", config.residuals.lines, "Match straight edges with explicit 3D lines of the map.");
 }
 
 void list_features(Section section, VisionConfig& config) {

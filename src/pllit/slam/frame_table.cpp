@@ -17,11 +17,11 @@ std::string joined(const std::vector<std::string>& reasons) {
 }  // namespace
 
 std::vector<std::string> health_columns() {
-  return {"time_s",        "state",      "reasons",    "points",    "candidates",    "inliers",
-          "residual_m",    "iterations", "speed_mps",  "sigma_x_m", "sigma_y_m",     "sigma_z_m",
-          "sigma_yaw_deg", "share_x",    "share_y",    "share_z",   "weakest_share", "degenerate",
-          "since_match_s", "imu_gap_s",  "image",      "features",  "matches",       "anchored",
-          "image_inliers", "misfit",     "correction", "grey_gain", "grey_bias",     "frame_ms"};
+  return {"time_s",     "state",     "reasons",       "points",     "candidates",    "inliers",       "residual_m",
+          "iterations", "speed_mps", "sigma_x_m",     "sigma_y_m",  "sigma_z_m",     "sigma_yaw_deg", "share_x",
+          "share_y",    "share_z",   "weakest_share", "degenerate", "since_match_s", "imu_gap_s",     "image",
+          "features",   "matches",   "anchored",      "lines",      "image_inliers", "misfit",        "correction",
+          "grey_gain",  "grey_bias", "frame_ms"};
 }
 
 namespace {
@@ -64,6 +64,7 @@ std::vector<FrameCell> health_row(const FrameEstimate& frame) {
           count(facts.image.points),
           count(facts.image.matches),
           count(facts.image.anchored),
+          count(facts.image.lines),
           count(facts.image.inliers),
           facts.image.misfit,
           facts.image.correction,

@@ -12,6 +12,7 @@ struct ImageFacts {
   bool used = false;                          ///< it has refined the state
   std::string refused;                        ///< why it was not looked at, or not believed; empty otherwise
   int points = 0, matches = 0, anchored = 0;  ///< features; with a keyframe's; of these on matched lines
+  int lines = 0;                              ///< seen again, of the map
   int candidates = 0, inliers = 0;            ///< residuals
   double misfit = 0.0;      ///< of the residuals that no pose explains, over what their noise lets expect
   double correction = 0.0;  ///< what the images want the pose moved by, likewise, averaged over a few seconds

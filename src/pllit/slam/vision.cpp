@@ -44,6 +44,7 @@ Vision::Vision(const Rig& rig, const VisionConfig& config, std::unique_ptr<Featu
       config_(config),
       extractor_(std::move(extractor)),
       least_cos_(cosine_of_corner(*rig.camera)),
+      lines_(config.lines),
       clones_(with_unknown(rig.T_I_C, camera_covariance(config))) {}
 
 void Vision::look_at(const CameraFrame& image) {
@@ -111,18 +112,32 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prio
   clock.charge(Stage::track);
 
   if (is_calibrated(*look))
-    chain_ = advanced(look->chain, look->counts, look->around, tracks, keyframes_, config_.chain).chain;
+    chain_ = in_fresh_greys(advanced(look->chain, look->counts, look->around, tracks, keyframes_, config_.chain).chain,
+                            keyframes_, config_.chain);
   facts.gain = chain_.curve.gain;
   facts.bias_grey = chain_.curve.bias;
   clock.charge(Stage::photometric);
 
   const Estimate posterior = update(prior, open, observe(look->features, tracks), facts);
-  if (wants_keyframe(tracks, keyframes_, look->features, image.time, rig_.camera->width, config_.keyframes)) {
-    if (std::ssize(keyframes_) >= config_.keyframes.most) drop_keyframe(expendable(tracks, keyframes_));
-    keep(std::move(*look), image.time, posterior);
-  }
+  extend_maps(std::move(*look), tracks, image.time, posterior);
   clock.charge(Stage::thermal);
   return posterior;
+}
+
+/// Sightings of lines, and a keyframe, where it is time for them: both need the depth of what the image shows.
+void Vision::extend_maps(Look look, const Tracks& tracks, Time time, const Estimate& posterior) {
+  const bool keyframe = wants_keyframe(tracks, keyframes_, look.features, time, rig_.camera->width, config_.keyframes);
+  const bool lines = config_.residuals.lines && (keyframe || time - lines_seen_ >= config_.line_spacing);
+  if (!keyframe && !lines) return;
+  const SE3 T_W_C = posterior.mean.T_W_I() * T_I_C();
+  const DepthImage depths = depths_at(T_W_C);
+  if (lines) {
+    lines_.add(look.features, tracks, depths, T_W_C, *rig_.camera);
+    lines_seen_ = time;
+  }
+  if (!keyframe) return;
+  if (std::ssize(keyframes_) >= config_.keyframes.most) drop_keyframe(expendable(tracks, keyframes_));
+  keep(std::move(look), depths, time, posterior);
 }
 
 ImageObservations Vision::observe(const Features& features, const Tracks& tracks) const {
@@ -140,7 +155,17 @@ ImageObservations Vision::observe(const Features& features, const Tracks& tracks
          .observed_px = features.points_px[static_cast<std::size_t>(match.current)].cast<double>(),
          .line_px = match.line_px});
   }
+  if (config_.residuals.lines) {
+    observations.lines = lines_.observed(features, tracks);
+    observations.points = off_lines(observations.points, observations.lines);
+  }
   return observations;
+}
+
+DepthImage Vision::depths_at(const SE3& T_W_C) const {
+  std::vector<Vector3f> points_W;
+  for (const SeenPoints& seen : points_) points_W.insert(points_W.end(), seen.points_W.begin(), seen.points_W.end());
+  return {points_W, T_W_C.inverse(), *rig_.camera, config_.depth};
 }
 
 /// Stage II of the paper's sequential filter; an image whose innovation contradicts the prior is not believed at all.
@@ -154,6 +179,7 @@ Estimate Vision::update(const Estimate& prior, const std::optional<StateDirectio
                            CameraPose::unknown);
   };
   JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{}, open);
+  facts.lines = static_cast<int>(observations.lines.size());
   facts.candidates = result.last.candidates;
   facts.inliers = result.last.inliers;
   if (facts.inliers < config_.least_inliers) return prior;
@@ -176,15 +202,12 @@ Estimate Vision::update(const Estimate& prior, const std::optional<StateDirectio
   return result.posterior;
 }
 
-void Vision::keep(Look look, Time time, const Estimate& posterior) {
+void Vision::keep(Look look, const DepthImage& depths, Time time, const Estimate& posterior) {
   Keyframe keyframe{.id = next_id_++, .time = time, .T_W_C = posterior.mean.T_W_I() * T_I_C()};
   keyframe.features = strongest(look.features, config_.keyframes.most_points);
-  std::vector<Vector3f> points_W;
-  for (const SeenPoints& seen : points_) points_W.insert(points_W.end(), seen.points_W.begin(), seen.points_W.end());
-  const DepthImage depth(points_W, keyframe.T_W_C.inverse(), *rig_.camera, config_.depth);
   std::vector<Vector3d> points_K;
   for (const Eigen::Vector2f& pixel : keyframe.features.points_px) {
-    keyframe.depths.push_back(depth.at(pixel.cast<double>()));
+    keyframe.depths.push_back(depths.at(pixel.cast<double>()));
     if (const auto& found = keyframe.depths.back())
       points_K.push_back(found->range_m * rig_.camera->ray(pixel.cast<double>()));
   }
@@ -193,6 +216,7 @@ void Vision::keep(Look look, Time time, const Estimate& posterior) {
   add_clone(clones_, posterior);
   clones_.covariance.bottomRightCorner<6, 6>() += keyframe_noise(points_K, rig_, config_.residuals.point_sigma_px);
   keyframes_.push_back(std::move(keyframe));
+  if (config_.residuals.lines) lines_.keep();
 }
 
 Expected<std::unique_ptr<Vision>> make_vision(const Rig& rig, const VisionConfig& config) {
@@ -205,11 +229,13 @@ Expected<std::unique_ptr<Vision>> make_vision(const Rig& rig, const VisionConfig
 void Vision::drop_keyframe(std::size_t index) {
   keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(index));
   remove_clone(clones_, index + 1);
+  if (config_.residuals.lines) lines_.drop(index);
 }
 
 void Vision::restart() {
   keyframes_.clear();
   clones_ = with_unknown(T_I_C(), clones_.covariance.topLeftCorner<6, 6>());
+  lines_.restart();
   points_.clear();
 }
 

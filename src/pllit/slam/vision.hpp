@@ -11,6 +11,7 @@
 
 #include "pllit/sensor/rig.hpp"
 #include "pllit/slam/image_facts.hpp"
+#include "pllit/slam/line_tracks.hpp"
 #include "pllit/slam/stage_clock.hpp"
 #include "pllit/slam/vision_config.hpp"
 #include "pllit/state/clones.hpp"
@@ -39,6 +40,8 @@ class Vision {
   /// Forgets what was built on poses that are not to be trusted any more.
   void restart();
 
+  /// The explicit lines found so far.
+  const LineMap& line_map() const { return lines_.map(); }
   /// As refined so far.
   const SE3& T_I_C() const { return clones_.poses.front(); }
 
@@ -53,9 +56,11 @@ class Vision {
   };
   Expected<Look> look(const CameraFrame& image) const;
   ImageObservations observe(const Features& features, const Tracks& tracks) const;
+  DepthImage depths_at(const SE3& T_W_C) const;
   Estimate update(const Estimate& prior, const std::optional<StateDirections>& open,
                   const ImageObservations& observations, ImageFacts& facts);
-  void keep(Look look, Time time, const Estimate& posterior);
+  void extend_maps(Look look, const Tracks& tracks, Time time, const Estimate& posterior);
+  void keep(Look look, const DepthImage& depths, Time time, const Estimate& posterior);
   bool is_calibrated(const Look& look) const;
   void drop_keyframe(std::size_t index);
 
@@ -68,6 +73,8 @@ class Vision {
   PhotometricChain chain_;
   std::optional<CountRange> range_;
   std::vector<Keyframe> keyframes_;
+  LineTracks lines_;
+  Time lines_seen_{};
   Clones clones_;  ///< T_I_C, which is refined, then the poses of the keyframes in their order
   struct SeenPoints {
     Time time;

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "pllit/map/line_map.hpp"
 #include "pllit/thermal/classical_extractor.hpp"
 #include "pllit/thermal/depth.hpp"
 #include "pllit/thermal/grey_input.hpp"
@@ -25,6 +26,7 @@ struct VisionConfig {
   std::string provider = "cpu";                            ///< that runs it
   int threads = 2;                                         ///< for it
   Duration image_spacing = std::chrono::milliseconds(70);  ///< images that follow sooner are left out
+  Duration line_spacing = std::chrono::milliseconds(250);  ///< between sightings of lines, which need depths
   double T_I_C_turn_deg = 0.3;  ///< how well the camera's attitude on the rig is known, one sigma; it is refined
   double T_I_C_shift_m = 0.01;  ///< and its place
   double depth_window_s = 1.0;  ///< LiDAR points that give depth are at most so old
@@ -37,6 +39,7 @@ struct VisionConfig {
   MatchConfig matching;
   KeyframeConfig keyframes;
   DepthConfig depth;
+  LineMapConfig lines;
   VisualConfig residuals;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "pllit/thermal/near_surface.hpp"
 
@@ -15,33 +16,21 @@ using Eigen::Vector2f;
 
 constexpr double kRad = M_PI / 180.0;
 
-/// What part of the unit sphere an image covers.
-struct Field {
-  float azimuth_min = 10.0F, azimuth_max = -10.0F, elevation_min = 10.0F, elevation_max = -10.0F;
-};
+/// Stereographic projection: the tangent of half the angle from the axis, in all directions alike, without any
+/// trigonometry. direction: unit, not straight backwards.
+Vector2f flattened(const Vector3f& direction) { return direction.head<2>() / (1.0F + direction.z()); }
 
-Vector2f azimuth_elevation(const Vector3f& direction) {
-  return {std::atan2(direction.x(), direction.z()), std::asin(std::clamp(direction.y(), -1.0F, 1.0F))};
-}
-
-Field field_of(const Camera& camera, float margin) {
-  Field field;
-  const auto cover = [&](double u, double v) {
-    const Vector2f at = azimuth_elevation(camera.ray({u, v}).cast<float>());
-    field.azimuth_min = std::min(field.azimuth_min, at.x() - margin);
-    field.azimuth_max = std::max(field.azimuth_max, at.x() + margin);
-    field.elevation_min = std::min(field.elevation_min, at.y() - margin);
-    field.elevation_max = std::max(field.elevation_max, at.y() + margin);
-  };
+/// What part of the plane an image covers.
+Eigen::AlignedBox2f field_of(const Camera& camera, float margin) {
+  Eigen::AlignedBox2f field;
   constexpr int steps = 16;
   for (int i = 0; i <= steps; ++i) {
     const double u = (camera.width - 1.0) * i / steps, v = (camera.height - 1.0) * i / steps;
-    cover(u, 0.0);
-    cover(u, camera.height - 1.0);
-    cover(0.0, v);
-    cover(camera.width - 1.0, v);
+    for (const Vector2d& px :
+         {Vector2d(u, 0.0), Vector2d(u, camera.height - 1.0), Vector2d(0.0, v), Vector2d(camera.width - 1.0, v)})
+      field.extend(flattened(camera.ray(px).cast<float>()));
   }
-  return field;
+  return {field.min() - Vector2f::Constant(margin), field.max() + Vector2f::Constant(margin)};
 }
 
 }  // namespace
@@ -84,34 +73,31 @@ class DepthImage::Neighbours {
 
 DepthImage::DepthImage(std::span<const Vector3f> points_P, const SE3& T_C_P, const Camera& camera,
                        const DepthConfig& config)
-    : camera_(camera), config_(config), bin_rad_(static_cast<float>(config.bin_deg * kRad)) {
-  const Field field = field_of(camera, static_cast<float>(config.reach_deg * kRad));
-  azimuth_min_ = field.azimuth_min;
-  elevation_min_ = field.elevation_min;
-  least_cos_elevation_ = std::cos(std::max(std::abs(field.elevation_min), std::abs(field.elevation_max)));
-  columns_ = static_cast<int>((field.azimuth_max - field.azimuth_min) / bin_rad_) + 1;
-  rows_ = static_cast<int>((field.elevation_max - field.elevation_min) / bin_rad_) + 1;
+    : camera_(camera), config_(config), bin_(static_cast<float>(std::tan(0.5 * config.bin_deg * kRad))) {
+  const Eigen::AlignedBox2f field = field_of(camera, static_cast<float>(std::tan(0.5 * config.reach_deg * kRad)));
+  corner_ = field.min();
+  const float farthest = field.min().cwiseAbs().cwiseMax(field.max().cwiseAbs()).norm();
+  least_bin_rad_ = 2.0F * bin_ / (1.0F + farthest * farthest);
+  columns_ = static_cast<int>(field.sizes().x() / bin_) + 1;
+  rows_ = static_cast<int>(field.sizes().y() / bin_) + 1;
   bins_.assign(static_cast<std::size_t>(columns_) * rows_, -1);
 
   const Eigen::Matrix3f R_C_P = T_C_P.rotation().cast<float>();
   const Vector3f t_C = T_C_P.translation().cast<float>();
   const auto least = static_cast<float>(config.min_range_m), most = static_cast<float>(config.max_range_m);
-  const bool ahead_only = field.azimuth_max < 1.5F && field.azimuth_min > -1.5F;
+  const float least_cos = 2.0F / (1.0F + farthest * farthest) - 1.0F;  // of the angle from the axis
   for (const Vector3f& p_P : points_P) {
     const Vector3f p_C = R_C_P * p_P + t_C;
-    if (ahead_only && !(p_C.z() > 0.0F)) continue;
     const float range_m = p_C.norm();
-    if (range_m > least && range_m < most) insert(p_C, range_m);
+    if (range_m > least && range_m < most && p_C.z() >= least_cos * range_m) insert(p_C, range_m);
   }
   hide();
 }
 
-Vector2f DepthImage::sphere_bin(const Vector3f& direction) const {
-  return (azimuth_elevation(direction) - Vector2f(azimuth_min_, elevation_min_)) / bin_rad_;
-}
+Vector2f DepthImage::bin_of(const Vector3f& direction) const { return (flattened(direction) - corner_) / bin_; }
 
 void DepthImage::insert(const Vector3f& p_C, float range_m) {
-  const Vector2f bin = sphere_bin(p_C / range_m);
+  const Vector2f bin = bin_of(p_C / range_m);
   if (!(bin.x() >= 0.0F && bin.y() >= 0.0F)) return;
   const int column = static_cast<int>(bin.x()), row = static_cast<int>(bin.y());
   if (column >= columns_ || row >= rows_) return;
@@ -126,40 +112,46 @@ void DepthImage::insert(const Vector3f& p_C, float range_m) {
   }
 }
 
-/// Whether a point that is nearer by a jump lies on one side: below, above, right or left within the hiding angle.
-bool DepthImage::nearer_around(float range_m, int row, int column, int down, int right) const {
-  const int reach = static_cast<int>(std::lround(config_.hiding_deg / config_.bin_deg));
-  const float jump = std::max(static_cast<float>(config_.jump_m), static_cast<float>(config_.jump_share) * range_m);
-  for (int far = 1; far <= reach; ++far)
-    for (int side = -1; side <= 1; ++side) {
-      const int r = row + down * far + (down == 0 ? side : 0), c = column + right * far + (right == 0 ? side : 0);
-      if (r < 0 || c < 0 || r >= rows_ || c >= columns_) continue;
-      const std::int32_t other = bins_[static_cast<std::size_t>(r) * columns_ + c];
-      if (other >= 0 && ranges_[other] < range_m - jump) return true;
-    }
-  return false;
-}
-
 /// Takes out points between nearer ones: what the camera cannot see but the LiDAR could, from elsewhere or between the
-/// beams that hit the surface in front. On a slanting surface the nearer ones are all on one side.
+/// beams that hit the surface in front. On a slanting surface the nearer ones are all on one side. "Nearer": by a jump,
+/// within the hiding angle above, below, left or right, there or one bin beside.
 void DepthImage::hide() {
-  std::vector<std::size_t> hidden;
+  constexpr float none = std::numeric_limits<float>::infinity();
+  const int reach = static_cast<int>(std::lround(config_.hiding_deg / config_.bin_deg)), margin = reach + 1;
+  const std::ptrdiff_t stride = columns_ + 2 * margin, size = stride * (rows_ + 2 * margin);
+  const auto at = [&](int row, int column) { return (row + margin) * stride + column + margin; };
+  std::vector<float> ranges(size, none), of_rows(size, none), of_columns(size, none);
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column)
+      if (const std::int32_t i = bins_[static_cast<std::size_t>(row) * columns_ + column]; i >= 0)
+        ranges[at(row, column)] = ranges_[i];
+  for (std::ptrdiff_t i = stride; i + stride < size; ++i) {  // the nearest of three bins across
+    of_rows[i] = std::min({ranges[i - stride], ranges[i], ranges[i + stride]});
+    of_columns[i] = std::min({ranges[i - 1], ranges[i], ranges[i + 1]});
+  }
+  const auto nearest = [reach](const std::vector<float>& across, std::ptrdiff_t from, std::ptrdiff_t step) {
+    float range_m = none;
+    for (int far = 1; far <= reach; ++far) range_m = std::min(range_m, across[from + far * step]);
+    return range_m;
+  };
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
-      const std::size_t bin = static_cast<std::size_t>(row) * columns_ + column;
-      if (bins_[bin] < 0) continue;
-      const auto nearer = [&](int down, int right) {
-        return nearer_around(ranges_[bins_[bin]], row, column, down, right);
+      const std::ptrdiff_t i = at(row, column);
+      if (ranges[i] == none) continue;
+      const float jump =
+          std::max(static_cast<float>(config_.jump_m), static_cast<float>(config_.jump_share) * ranges[i]);
+      const auto nearer = [&](const std::vector<float>& across, std::ptrdiff_t step) {
+        return nearest(across, i, step) < ranges[i] - jump;
       };
-      if ((nearer(0, -1) && nearer(0, 1)) || (nearer(-1, 0) && nearer(1, 0))) hidden.push_back(bin);
+      if ((nearer(of_rows, -1) && nearer(of_rows, 1)) || (nearer(of_columns, -stride) && nearer(of_columns, stride)))
+        bins_[static_cast<std::size_t>(row) * columns_ + column] = -1;
     }
-  for (const std::size_t bin : hidden) bins_[bin] = -1;
 }
 
 void DepthImage::collect(const Vector3f& ray, Neighbours& neighbours) const {
   const auto reach = static_cast<float>(std::sin(config_.reach_deg * kRad));
   const auto clear = static_cast<float>(config_.clear_deg * kRad);
-  const Vector2f centre = sphere_bin(ray);
+  const Vector2f centre = bin_of(ray);
   const int column = static_cast<int>(std::floor(centre.x())), row = static_cast<int>(std::floor(centre.y()));
   const auto visit = [&](int r, int c) {
     if (r < 0 || c < 0 || r >= rows_ || c >= columns_) return;
@@ -181,7 +173,7 @@ void DepthImage::collect(const Vector3f& ray, Neighbours& neighbours) const {
       visit(row - i, column - ring);
     }
     // What the next rings hold is at least this far from the ray.
-    const float beyond = static_cast<float>(ring) * bin_rad_ * least_cos_elevation_;
+    const float beyond = static_cast<float>(ring) * least_bin_rad_;
     const bool enough = neighbours.count() >= Neighbours::least && beyond > wanted_angle();
     if (beyond > reach || enough) break;
   }

@@ -13,7 +13,7 @@
 namespace pllit {
 
 struct DepthConfig {
-  double bin_deg = 0.15;             ///< of the range image; a bin keeps its nearest return
+  double bin_deg = 0.15;             ///< of the range image at its middle; a bin keeps its nearest return
   double reach_deg = 1.5;            ///< neighbours of a feature are at most this far from its ray
   double patch_m = 0.10;             ///< and at most this far across it, as long as that leaves enough of them
   double edge_deg = 0.3;             ///< a ray may pass beside the points of its surface by as much, not farther
@@ -48,15 +48,16 @@ class DepthImage {
  private:
   class Neighbours;
 
-  Eigen::Vector2f sphere_bin(const Vector3f& direction) const;
+  Eigen::Vector2f bin_of(const Vector3f& direction) const;
   void insert(const Vector3f& p_C, float range_m);
   void hide();
-  bool nearer_around(float range_m, int row, int column, int down, int right) const;
   void collect(const Vector3f& ray, Neighbours& neighbours) const;
 
   Camera camera_;
   DepthConfig config_;
-  float bin_rad_, azimuth_min_, elevation_min_, least_cos_elevation_;
+  float bin_;               ///< side, in the plane that the sphere is projected to
+  float least_bin_rad_;     ///< angle that the smallest bin covers; at the axis, the largest, it is bin_deg
+  Eigen::Vector2f corner_;  ///< of bin (0, 0)
   int columns_, rows_;
   std::vector<Vector3f> points_;  ///< in C
   std::vector<float> ranges_;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 namespace pllit {
 namespace {
@@ -147,6 +148,25 @@ ChainStep advanced(const PhotometricChain& chain, const cv::Mat& grey, const cv:
   step.chain.curve = step.fit.curve;
   step.chain.quantiles = calibrated_quantiles(grey, step.chain.curve);
   return step;
+}
+
+PhotometricChain in_fresh_greys(const PhotometricChain& chain, std::span<Keyframe> window, const ChainConfig& config) {
+  constexpr double kMiddle = 128.0;
+  const auto [gain, bias] = std::pair(chain.curve.gain, chain.curve.bias);
+  const bool stretched = std::max(gain, 1.0 / gain) > config.most_stretch,
+             shifted = std::abs(gain * kMiddle + bias - kMiddle) > config.most_shift_grey;
+  if (!stretched && !shifted) return chain;
+  const auto fresh = [&](cv::Mat& greys) { greys = (greys - bias) / gain; };
+  for (Keyframe& keyframe : window) {
+    for (float& grey : keyframe.greys) grey = static_cast<float>((static_cast<double>(grey) - bias) / gain);
+    if (!keyframe.greys_around.empty()) fresh(keyframe.greys_around);
+  }
+  PhotometricChain result{.curve = chain.curve, .quantiles = chain.quantiles.clone()};
+  if (!result.quantiles.empty()) fresh(result.quantiles);
+  result.curve.gain = 1.0;
+  result.curve.bias = 0.0;
+  for (double& offset : result.curve.offsets) offset /= gain;
+  return result;
 }
 
 }  // namespace pllit

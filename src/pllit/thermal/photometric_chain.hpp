@@ -29,6 +29,9 @@ std::vector<GreyPair> grey_pairs(const Tracks& tracks, std::span<const Keyframe>
 struct ChainConfig {
   PhotometricConfig fit{};
   int most_pairs = 1500;
+  /// Calibrated images may be stretched or squeezed by this factor and shifted by this many greys against the camera's
+  /// own; beyond, they become too pale or too clipped to find features in.
+  double most_stretch = 1.6, most_shift_grey = 60.0;
 };
 
 /// The chain's state between two images.
@@ -51,5 +54,11 @@ struct ChainStep {
 /// what one hand-over gets wrong the others correct), starting at the chain's. grey: CV_8UC1, raw.
 ChainStep advanced(const PhotometricChain& chain, const cv::Mat& grey, const cv::Mat& around_now, const Tracks& tracks,
                    std::span<const Keyframe> window, const ChainConfig& config);
+
+/// The greys that all images are brought to are those of the first image, which may have been a poor one: taken while
+/// the camera's exposure was settling, or of another scene. Where the chain's curve stretches, squeezes or shifts by
+/// more than allowed, the last image's greys take their place: the window's greys are brought to them, and the curve
+/// becomes the identity but for its bend. What it calibrates to changes, what it says of differences does not.
+PhotometricChain in_fresh_greys(const PhotometricChain& chain, std::span<Keyframe> window, const ChainConfig& config);
 
 }  // namespace pllit

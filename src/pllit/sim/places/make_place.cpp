@@ -49,6 +49,7 @@ Expected<std::unique_ptr<Place>> make_place(const PlaceConfig& config) {
   if (auto checked = check(config); !checked) return std::unexpected(checked.error());
   auto parts = parts_of(config);
   if (!parts) return std::unexpected(parts.error());
+  parts->climate.air_K += config.warmer_K;
   return assembled(std::move(*parts));
 }
 

@@ -48,6 +48,7 @@ struct PlaceConfig {
   double height_m = 1.3;                ///< of the IMU above the ground, as a rule
   double clearance_m = 0.6;             ///< that every surface but the ground keeps from the path; 2.5 suits a car
   Light light = Light::day;
+  double warmer_K = 0.0;                ///< the air, and with it everything, than usual
   bool bare = false;                    ///< corridors: with nothing that tells a LiDAR one metre from the next
   int people = 0;                       ///< at most; fewer where there is no room 1.5 m off the path
   int cars = 0;                         ///< that drive (street), at most
