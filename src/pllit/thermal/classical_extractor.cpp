@@ -1,6 +1,7 @@
 #include "pllit/thermal/classical_extractor.hpp"
 
 #include <format>
+#include <iterator>
 
 #include "pllit/thermal/patch_descriptor.hpp"
 
@@ -13,10 +14,14 @@ Expected<Features> ClassicalExtractor::extract(const cv::Mat& grey) {
         std::format("features need an 8-bit image of one channel and at least {0} x {0} pixels; this one has {1} x {2} "
                     "of OpenCV's type {3}",
                     kLeast_px, grey.cols, grey.rows, grey.type()));
+  std::vector<Corner> corners = corners_of(contrast_normalised(grey, config_.corners), config_.corners);
+  if (std::ssize(corners) < config_.most_points / 3) {  // dim or bare: faint corners are better than none
+    CornerConfig faint = config_.corners;
+    faint.noise_floors *= 0.5;
+    corners = corners_of(contrast_normalised(grey, faint), faint);
+  }
+  corners = spread_evenly(corners, config_.most_points, static_cast<float>(config_.most_radius_px));
   Features features;
-  const std::vector<Corner> corners =
-      spread_evenly(corners_of(contrast_normalised(grey, config_.corners), config_.corners), config_.most_points,
-                    static_cast<float>(config_.most_radius_px));
   for (const Corner& corner : corners) {
     features.points_px.push_back(corner.at_px);
     features.scores.push_back(corner.strength);
