@@ -2,10 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <opencv2/core.hpp>
-
 #include <bit>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 
 #include "pllit/sim/sequences.hpp"
 #include "pllit/sim/simulation.hpp"

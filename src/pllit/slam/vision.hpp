@@ -40,8 +40,6 @@ class Vision {
   /// Forgets what was built on poses that are not to be trusted any more.
   void restart();
 
-  /// The explicit lines found so far.
-  const LineMap& line_map() const { return lines_.map(); }
   /// As refined so far.
   const SE3& T_I_C() const { return clones_.poses.front(); }
 

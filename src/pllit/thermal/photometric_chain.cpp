@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 
 namespace pllit {
 namespace {
@@ -152,7 +151,7 @@ ChainStep advanced(const PhotometricChain& chain, const cv::Mat& grey, const cv:
 
 PhotometricChain in_fresh_greys(const PhotometricChain& chain, std::span<Keyframe> window, const ChainConfig& config) {
   constexpr double kMiddle = 128.0;
-  const auto [gain, bias] = std::pair(chain.curve.gain, chain.curve.bias);
+  const double gain = chain.curve.gain, bias = chain.curve.bias;
   const bool stretched = std::max(gain, 1.0 / gain) > config.most_stretch,
              shifted = std::abs(gain * kMiddle + bias - kMiddle) > config.most_shift_grey;
   if (!stretched && !shifted) return chain;

@@ -4,7 +4,6 @@
 #include <utility>
 
 namespace pllit {
-namespace {}  // namespace
 
 RayLidar without_errors(RayLidar lidar) {
   lidar.min_range_m = lidar.range_sigma_m = lidar.range_step_m = lidar.beam_sigma_rad = 0.0;
