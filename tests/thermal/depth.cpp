@@ -152,7 +152,7 @@ TEST(FeatureDepths, OfAHiddenSurfaceDoNotShineThrough) {
 
 TEST(FeatureDepths, AreNothingWhereTheLidarSawNothing) {
   const Camera camera = test::thermal_camera();
-  EXPECT_FALSE(DepthImage({}, SE3::Identity(), camera, {}).at({320.0, 240.0}));
+  EXPECT_FALSE(DepthImage(std::vector<Vector3f>{}, SE3::Identity(), camera, {}).at({320.0, 240.0}));
   const std::vector<Vector3f> four(4, Vector3f(0.0F, 0.0F, 4.0F));
   EXPECT_FALSE(DepthImage(four, SE3::Identity(), camera, {}).at({320.0, 240.0}));
   const std::vector<Vector3f> behind(100, Vector3f(0.0F, 0.0F, -4.0F)), broken(100, Vector3f::Constant(NAN));

@@ -47,6 +47,7 @@ TEST(KeyframeWindow, WantsAnImageThatHasLostSightOfTheLastKeyframeOrMovedFar) {
   EXPECT_TRUE(wants(150, 5.0F, 4.5));
   EXPECT_FALSE(wants(150, 0.5F, 60.0)) << "a rig at rest needs none";
   EXPECT_FALSE(wants(40, 5.0F, 1.05)) << "not two at once";
+  EXPECT_TRUE(wants(10, 5.0F, 1.05)) << "but before the image is lost";
 }
 
 TEST(KeyframeWindow, KeepsTheBestPointsOfAnImage) {

@@ -39,6 +39,14 @@ bool same_pixels(const cv::Mat& a, const cv::Mat& b) {
   return true;
 }
 
+/// At most `most` of the points, evenly by index.
+std::vector<Vector3f> thinned(const std::vector<Vector3f>& points, std::size_t most) {
+  if (points.size() <= most) return points;
+  std::vector<Vector3f> kept(most);
+  for (std::size_t i = 0; i < most; ++i) kept[i] = points[i * points.size() / most];
+  return kept;
+}
+
 }  // namespace
 
 std::optional<ThermographyInput> thermography_input(const FrameEstimate& frame, const Rig& rig,
@@ -118,8 +126,8 @@ void Thermography::remember_scan(const ThermographyInput& input) {
     const auto plane = input.planes->plane_at(p_W);
     return plane ? Vector3f(plane->normal_W().cast<float>()) : Vector3f(Vector3f::Zero());
   };
-  surface_.add(input.points_W, input.T_W_C.translation(), input.time, normal_at);
-  scans_.push_back(input.points_W);
+  scans_.push_back(thinned(input.points_W, static_cast<std::size_t>(config_.scan_points)));
+  surface_.add(scans_.back(), input.T_W_C.translation(), input.time, normal_at);
   while (static_cast<int>(scans_.size()) > config_.scans) scans_.pop_front();
   std::vector<Vector3f> fresh_W;
   for (const auto& scan_W : scans_) fresh_W.insert(fresh_W.end(), scan_W.begin(), scan_W.end());

@@ -163,9 +163,9 @@ ImageObservations Vision::observe(const Features& features, const Tracks& tracks
 }
 
 DepthImage Vision::depths_at(const SE3& T_W_C) const {
-  std::vector<Vector3f> points_W;
-  for (const SeenPoints& seen : points_) points_W.insert(points_W.end(), seen.points_W.begin(), seen.points_W.end());
-  return {points_W, T_W_C.inverse(), *rig_.camera, config_.depth};
+  std::vector<std::span<const Vector3f>> scans_W;
+  for (const SeenPoints& seen : points_) scans_W.emplace_back(seen.points_W);
+  return {scans_W, T_W_C.inverse(), *rig_.camera, config_.depth};
 }
 
 /// Stage II of the paper's sequential filter; an image whose innovation contradicts the prior is not believed at all.

@@ -16,9 +16,11 @@ using Eigen::Vector2f;
 
 constexpr double kRad = M_PI / 180.0;
 
+constexpr float kNone = std::numeric_limits<float>::infinity();
+
 /// Stereographic projection: the tangent of half the angle from the axis, in all directions alike, without any
-/// trigonometry. direction: unit, not straight backwards.
-Vector2f flattened(const Vector3f& direction) { return direction.head<2>() / (1.0F + direction.z()); }
+/// trigonometry. range: the norm of `p`, which does not point straight backwards.
+Vector2f flattened(const Vector3f& p, float range) { return p.head<2>() / (range + p.z()); }
 
 /// What part of the plane an image covers.
 Eigen::AlignedBox2f field_of(const Camera& camera, float margin) {
@@ -28,7 +30,7 @@ Eigen::AlignedBox2f field_of(const Camera& camera, float margin) {
     const double u = (camera.width - 1.0) * i / steps, v = (camera.height - 1.0) * i / steps;
     for (const Vector2d& px :
          {Vector2d(u, 0.0), Vector2d(u, camera.height - 1.0), Vector2d(0.0, v), Vector2d(camera.width - 1.0, v)})
-      field.extend(flattened(camera.ray(px).cast<float>()));
+      field.extend(flattened(camera.ray(px).cast<float>(), 1.0F));
   }
   return {field.min() - Vector2f::Constant(margin), field.max() + Vector2f::Constant(margin)};
 }
@@ -38,7 +40,7 @@ Eigen::AlignedBox2f field_of(const Camera& camera, float margin) {
 /// The points around a ray, in room that is made once.
 class DepthImage::Neighbours {
  public:
-  static constexpr int most = 160, least = 5;
+  static constexpr int most = kMostNeighbours, least = 5;
 
   bool full() const { return count_ == most; }
   int count() const { return count_; }
@@ -73,42 +75,49 @@ class DepthImage::Neighbours {
 
 DepthImage::DepthImage(std::span<const Vector3f> points_P, const SE3& T_C_P, const Camera& camera,
                        const DepthConfig& config)
+    : DepthImage(std::span(&points_P, 1), T_C_P, camera, config) {}
+
+DepthImage::DepthImage(std::span<const std::span<const Vector3f>> scans_P, const SE3& T_C_P, const Camera& camera,
+                       const DepthConfig& config)
     : camera_(camera), config_(config), bin_(static_cast<float>(std::tan(0.5 * config.bin_deg * kRad))) {
   const Eigen::AlignedBox2f field = field_of(camera, static_cast<float>(std::tan(0.5 * config.reach_deg * kRad)));
   corner_ = field.min();
   const float farthest = field.min().cwiseAbs().cwiseMax(field.max().cwiseAbs()).norm();
   least_bin_rad_ = 2.0F * bin_ / (1.0F + farthest * farthest);
-  columns_ = static_cast<int>(field.sizes().x() / bin_) + 1;
-  rows_ = static_cast<int>(field.sizes().y() / bin_) + 1;
-  bins_.assign(static_cast<std::size_t>(columns_) * rows_, -1);
-
-  const Eigen::Matrix3f R_C_P = T_C_P.rotation().cast<float>();
-  const Vector3f t_C = T_C_P.translation().cast<float>();
-  const auto least = static_cast<float>(config.min_range_m), most = static_cast<float>(config.max_range_m);
-  const float least_cos = 2.0F / (1.0F + farthest * farthest) - 1.0F;  // of the angle from the axis
-  for (const Vector3f& p_P : points_P) {
-    const Vector3f p_C = R_C_P * p_P + t_C;
-    const float range_m = p_C.norm();
-    if (range_m > least && range_m < most && p_C.z() >= least_cos * range_m) insert(p_C, range_m);
-  }
+  least_cos_ = 2.0F / (1.0F + farthest * farthest) - 1.0F;
+  const Eigen::Array2i bins = (field.sizes() / bin_).cast<int>().array() + 1;
+  ranges_m_ = Bins<float>::Constant(bins.y(), bins.x(), kNone);
+  index_.resize(bins.y(), bins.x());
+  for (const auto points_P : scans_P) insert(points_P, T_C_P);
   hide();
 }
 
-Vector2f DepthImage::bin_of(const Vector3f& direction) const { return (flattened(direction) - corner_) / bin_; }
+Vector2f DepthImage::bin_of(const Vector3f& p_C, float range_m) const {
+  return (flattened(p_C, range_m) - corner_) / bin_;
+}
 
-void DepthImage::insert(const Vector3f& p_C, float range_m) {
-  const Vector2f bin = bin_of(p_C / range_m);
-  if (!(bin.x() >= 0.0F && bin.y() >= 0.0F)) return;
-  const int column = static_cast<int>(bin.x()), row = static_cast<int>(bin.y());
-  if (column >= columns_ || row >= rows_) return;
-  std::int32_t& at = bins_[static_cast<std::size_t>(row) * columns_ + column];
-  if (at < 0) {
-    at = static_cast<std::int32_t>(points_.size());
-    points_.push_back(p_C);
-    ranges_.push_back(range_m);
-  } else if (range_m < ranges_[at]) {
-    points_[at] = p_C;
-    ranges_[at] = range_m;
+void DepthImage::insert(std::span<const Vector3f> points_P, const SE3& T_C_P) {
+  const Eigen::Matrix3f R_C_P = T_C_P.rotation().cast<float>();
+  const Vector3f t_C = T_C_P.translation().cast<float>();
+  const auto least = static_cast<float>(config_.min_range_m), most = static_cast<float>(config_.max_range_m);
+  for (const Vector3f& p_P : points_P) {
+    const Vector3f p_C = R_C_P * p_P + t_C;
+    const float range_m = p_C.norm();
+    if (!(range_m > least && range_m < most && p_C.z() >= least_cos_ * range_m)) continue;
+    const Vector2f bin = bin_of(p_C, range_m);
+    if (!(bin.x() >= 0.0F && bin.y() >= 0.0F)) continue;
+    const int column = static_cast<int>(bin.x()), row = static_cast<int>(bin.y());
+    if (column >= ranges_m_.cols() || row >= ranges_m_.rows()) continue;
+    float& nearest_m = ranges_m_(row, column);
+    if (range_m >= nearest_m) continue;
+    std::int32_t& index = index_(row, column);
+    if (nearest_m == kNone) {
+      index = static_cast<std::int32_t>(points_.size());
+      points_.push_back(p_C);
+    } else {
+      points_[static_cast<std::size_t>(index)] = p_C;
+    }
+    nearest_m = range_m;
   }
 }
 
@@ -116,49 +125,42 @@ void DepthImage::insert(const Vector3f& p_C, float range_m) {
 /// beams that hit the surface in front. On a slanting surface the nearer ones are all on one side. "Nearer": by a jump,
 /// within the hiding angle above, below, left or right, there or one bin beside.
 void DepthImage::hide() {
-  constexpr float none = std::numeric_limits<float>::infinity();
   const int reach = static_cast<int>(std::lround(config_.hiding_deg / config_.bin_deg)), margin = reach + 1;
-  const std::ptrdiff_t stride = columns_ + 2 * margin, size = stride * (rows_ + 2 * margin);
-  const auto at = [&](int row, int column) { return (row + margin) * stride + column + margin; };
-  std::vector<float> ranges(size, none), of_rows(size, none), of_columns(size, none);
-  for (int row = 0; row < rows_; ++row)
-    for (int column = 0; column < columns_; ++column)
-      if (const std::int32_t i = bins_[static_cast<std::size_t>(row) * columns_ + column]; i >= 0)
-        ranges[at(row, column)] = ranges_[i];
-  for (std::ptrdiff_t i = stride; i + stride < size; ++i) {  // the nearest of three bins across
-    of_rows[i] = std::min({ranges[i - stride], ranges[i], ranges[i + stride]});
-    of_columns[i] = std::min({ranges[i - 1], ranges[i], ranges[i + 1]});
-  }
-  const auto nearest = [reach](const std::vector<float>& across, std::ptrdiff_t from, std::ptrdiff_t step) {
-    float range_m = none;
-    for (int far = 1; far <= reach; ++far) range_m = std::min(range_m, across[from + far * step]);
-    return range_m;
-  };
-  for (int row = 0; row < rows_; ++row)
-    for (int column = 0; column < columns_; ++column) {
-      const std::ptrdiff_t i = at(row, column);
-      if (ranges[i] == none) continue;
-      const float jump =
-          std::max(static_cast<float>(config_.jump_m), static_cast<float>(config_.jump_share) * ranges[i]);
-      const auto nearer = [&](const std::vector<float>& across, std::ptrdiff_t step) {
-        return nearest(across, i, step) < ranges[i] - jump;
-      };
-      if ((nearer(of_rows, -1) && nearer(of_rows, 1)) || (nearer(of_columns, -stride) && nearer(of_columns, stride)))
-        bins_[static_cast<std::size_t>(row) * columns_ + column] = -1;
+  const Eigen::Index rows = ranges_m_.rows(), columns = ranges_m_.cols();
+  Bins<float> ranges = Bins<float>::Constant(rows + 2 * margin, columns + 2 * margin, kNone);
+  ranges.block(margin, margin, rows, columns) = ranges_m_;
+  Bins<float> across = ranges;  // the nearest of three bins beside each other
+  across.middleCols(1, across.cols() - 2) = ranges.leftCols(ranges.cols() - 2)
+                                                .min(ranges.middleCols(1, ranges.cols() - 2))
+                                                .min(ranges.rightCols(ranges.cols() - 2));
+  Eigen::Array<float, 1, Eigen::Dynamic> above_each_other(ranges.cols()), left(columns), right(columns), up(columns),
+      down(columns);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const Eigen::Index at = row + margin;
+    above_each_other = ranges.row(at - 1).min(ranges.row(at)).min(ranges.row(at + 1));
+    left = right = up = down = kNone;
+    for (int far = 1; far <= reach; ++far) {
+      left = left.min(above_each_other.segment(margin - far, columns));
+      right = right.min(above_each_other.segment(margin + far, columns));
+      up = up.min(across.row(at - far).segment(margin, columns));
+      down = down.min(across.row(at + far).segment(margin, columns));
     }
+    auto seen = ranges_m_.row(row);
+    const auto jump = (static_cast<float>(config_.jump_share) * seen).max(static_cast<float>(config_.jump_m));
+    seen = (left.max(right).min(up.max(down)) < seen - jump).select(kNone, seen).eval();
+  }
 }
 
 void DepthImage::collect(const Vector3f& ray, Neighbours& neighbours) const {
   const auto reach = static_cast<float>(std::sin(config_.reach_deg * kRad));
   const auto clear = static_cast<float>(config_.clear_deg * kRad);
-  const Vector2f centre = bin_of(ray);
+  const Vector2f centre = bin_of(ray, 1.0F);
   const int column = static_cast<int>(std::floor(centre.x())), row = static_cast<int>(std::floor(centre.y()));
   const auto visit = [&](int r, int c) {
-    if (r < 0 || c < 0 || r >= rows_ || c >= columns_) return;
-    const std::int32_t i = bins_[static_cast<std::size_t>(r) * columns_ + c];
-    if (i < 0) return;
-    const float angle2 = (points_[i] / ranges_[i] - ray).squaredNorm();
-    if (angle2 <= reach * reach) neighbours.add({points_[i], ranges_[i], angle2}, clear * clear);
+    if (r < 0 || c < 0 || r >= ranges_m_.rows() || c >= ranges_m_.cols() || ranges_m_(r, c) == kNone) return;
+    const Vector3f& p_C = points_[static_cast<std::size_t>(index_(r, c))];
+    const float range_m = ranges_m_(r, c), angle2 = (p_C / range_m - ray).squaredNorm();
+    if (angle2 <= reach * reach) neighbours.add({p_C, range_m, angle2}, clear * clear);
   };
   // A patch of the surface, and what tells whether a nearer one ends close by.
   const auto wanted_angle = [&] {
@@ -190,8 +192,9 @@ std::optional<FeatureDepth> DepthImage::at(const Vector2d& pixel_px) const {
 
 std::vector<Vector3f> DepthImage::points_C() const {
   std::vector<Vector3f> seen;
-  for (const std::int32_t i : bins_)
-    if (i >= 0) seen.push_back(points_[i]);
+  for (Eigen::Index row = 0; row < ranges_m_.rows(); ++row)
+    for (Eigen::Index column = 0; column < ranges_m_.cols(); ++column)
+      if (ranges_m_(row, column) != kNone) seen.push_back(points_[static_cast<std::size_t>(index_(row, column))]);
   return seen;
 }
 

@@ -36,6 +36,9 @@ class DepthImage {
   /// points_P: in any frame P, metres (floats hold over kilometres if P's origin is near), taken within a second or so
   /// and brought there with posterior poses. T_C_P: of the camera at the image's time.
   DepthImage(std::span<const Vector3f> points_P, const SE3& T_C_P, const Camera& camera, const DepthConfig& config);
+  /// The same from several scans.
+  DepthImage(std::span<const std::span<const Vector3f>> scans_P, const SE3& T_C_P, const Camera& camera,
+             const DepthConfig& config);
 
   /// Range along the feature's ray to the plane through its neighbours. Where ranges jump, the feature belongs to the
   /// nearer surface, which owns the edge; nothing where the ray passes beside it (no plane bridges a jump), where too
@@ -48,20 +51,23 @@ class DepthImage {
  private:
   class Neighbours;
 
-  Eigen::Vector2f bin_of(const Vector3f& direction) const;
-  void insert(const Vector3f& p_C, float range_m);
+  template <class T>
+  using Bins = Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  Eigen::Vector2f bin_of(const Vector3f& p_C, float range_m) const;
+  void insert(std::span<const Vector3f> points_P, const SE3& T_C_P);
   void hide();
   void collect(const Vector3f& ray, Neighbours& neighbours) const;
 
   Camera camera_;
   DepthConfig config_;
-  float bin_;               ///< side, in the plane that the sphere is projected to
-  float least_bin_rad_;     ///< angle that the smallest bin covers; at the axis, the largest, it is bin_deg
-  Eigen::Vector2f corner_;  ///< of bin (0, 0)
-  int columns_, rows_;
+  float bin_;                     ///< side, in the plane that the sphere is projected to
+  float least_bin_rad_;           ///< angle that the smallest bin covers; at the axis, the largest, it is bin_deg
+  float least_cos_;               ///< of the angle from the axis, within the field
+  Eigen::Vector2f corner_;        ///< of bin (0, 0)
+  Bins<float> ranges_m_;          ///< of the nearest return; infinite where there is none
+  Bins<std::int32_t> index_;      ///< of its point, where there is one
   std::vector<Vector3f> points_;  ///< in C
-  std::vector<float> ranges_;
-  std::vector<std::int32_t> bins_;  ///< index of the point, or -1; row by row
 };
 
 /// Points of the near surface along an observed line, `step_px` apart: the image says where the edge runs, which the

@@ -48,8 +48,8 @@ bool wants_keyframe(const Tracks& tracks, std::span<const Keyframe> window, cons
   if (window.empty()) return true;
   const Keyframe& last = window.back();
   const double passed_s = to_seconds(time - last.time);
-  if (passed_s < config.least_s) return false;
   const int matches = matches_by_keyframe(tracks, window.size()).back();
+  if (passed_s < config.least_s && matches >= config.lost_matches) return false;
   const auto points = static_cast<double>(std::min(last.features.points_px.size(), now.points_px.size()));
   if (matches < config.least_share * points && matches < config.least_matches) return true;
   const double motion_px = median_motion_px(tracks, window.size() - 1, last, now);

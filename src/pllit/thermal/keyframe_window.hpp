@@ -17,8 +17,9 @@ struct KeyframeConfig {
   int least_matches = 80;
   double parallax = 0.08;  ///< median motion of its points, as a share of the image's width: with more
   double most_s = 3.0;     ///< without a keyframe, where the rig moves: then the image becomes one
-  double least_s = 0.1;    ///< between two keyframes
-  double still_px = 2.0;   ///< median motion below which the rig counts as still
+  double least_s = 0.3;    ///< between two keyframes, unless fewer are matched than the image needs to be followed:
+  int lost_matches = 30;
+  double still_px = 2.0;  ///< median motion below which the rig counts as still
 };
 
 /// The best points, at most `most`, with all lines: what a keyframe keeps. Images are searched for more points than

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -91,6 +92,8 @@ class RayPlaneFit {
   RayPlaneFit(const Vector3d& ray, std::span<const RaysNeighbour> points, double range_sigma_m)
       : ray_(ray), u_(ray.unitOrthogonal()), v_(ray.cross(u_)), points_(points), sigma_m_(range_sigma_m) {
     z0_m_ = points[points.size() / 2].p_C.cast<double>().dot(ray);
+    assert(points.size() <= rows_.size());
+    std::ranges::transform(points, rows_.begin(), [this](const RaysNeighbour& point) { return row(point); });
   }
 
   /// The fit to the points within `limit_m` of `before`.
@@ -102,8 +105,7 @@ class RayPlaneFit {
     Vector3d Xty = Vector3d::Zero();
     double yy = 0.0;
     RayPlane plane;
-    for (const RaysNeighbour& point : points_) {
-      const auto [x, y] = row(point);
+    for (const auto& [x, y] : std::span(rows_).first(points_.size())) {
       if (std::abs(y - x.dot(before.coefficients)) > limit_m) continue;
       XtX += x * x.transpose();
       Xty += y * x;
@@ -155,6 +157,7 @@ class RayPlaneFit {
   Vector3d ray_, u_, v_;
   std::span<const RaysNeighbour> points_;
   double sigma_m_, z0_m_;
+  std::array<Row, kMostNeighbours> rows_;
 };
 
 }  // namespace
