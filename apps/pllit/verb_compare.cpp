@@ -69,7 +69,8 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
               {"rmse_m", located->rmse_m}}},
             {"voxels", {{"shared", found.shared}, {"not_seen_again", found.only_before}, {"only_now", found.only_now}}},
             {"drift",
-             {{"holds", found.drift.holds},
+             {{"holds", found.drift_covered > 0.0},
+              {"covered", found.drift_covered},
               {"gain", found.drift.curve.gain},
               {"bias", found.drift.curve.bias},
               {"rms", found.drift.rms}}},
@@ -88,6 +89,9 @@ std::string visit_text(const Json& visit) {
                       100.0 * shared / std::max(1, shared + missed), shared);
   if (!visit["drift"]["holds"].get<bool>())
     return text + "  the visits' intensities fit to each other by no curve: nothing is said about changes\n";
+  if (const double covered = visit["drift"]["covered"]; covered < 0.95)
+    text += std::format("  judged: {:.0f} % of those; the others' intensities fit to each other by no curve\n",
+                        100.0 * covered);
   for (const Json& change : visit["changes"]) {
     const auto p = change["position_m"].get<std::array<double, 3>>();
     text += std::format(

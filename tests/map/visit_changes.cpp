@@ -41,6 +41,27 @@ PointTable wall(Random& random, const Difference& difference = {}) {
   return table;
 }
 
+void append(PointTable& table, const PointTable& more) {
+  if (table.fields.empty()) table.fields.resize(more.fields.size());
+  table.points.insert(table.points.end(), more.points.begin(), more.points.end());
+  for (std::size_t i = 0; i < more.fields.size(); ++i) {
+    table.fields[i].name = more.fields[i].name;
+    table.fields[i].values.insert(table.fields[i].values.end(), more.fields[i].values.begin(),
+                                  more.fields[i].values.end());
+  }
+}
+
+/// The same room several times, six metres apart.
+PointTable repeated(const PointTable& room, int times) {
+  PointTable rooms;
+  for (int i = 0; i < times; ++i) {
+    PointTable next = room;
+    for (Vector3f& p_W : next.points) p_W.y() += 6.0F * static_cast<float>(i);
+    append(rooms, next);
+  }
+  return rooms;
+}
+
 VisitChanges between(const Difference& difference) {
   Random random(1);
   const PointTable before = wall(random);
@@ -49,7 +70,7 @@ VisitChanges between(const Difference& difference) {
 
 TEST(VisitChanges, AreNoneWhereOnlyTheWeatherChanged) {
   const VisitChanges found = between({.gain = 1.3, .bias = -25.0});
-  EXPECT_TRUE(found.drift.holds);
+  EXPECT_NEAR(found.drift_covered, 1.0, 1e-9);
   EXPECT_GT(found.shared, 300);
   EXPECT_EQ(found.only_before + found.only_now, 0);
   EXPECT_TRUE(found.same_site);
@@ -67,6 +88,24 @@ TEST(VisitChanges, TellWhatBecameHotterAndCoolerWhateverTheWeather) {
   }
 }
 
+TEST(VisitChanges, AreSeenWhereTheScaleWandersFromRoomToRoom) {
+  for (const double patch : {0.0, 80.0}) {
+    Random random(3);
+    const PointTable before = repeated(wall(random), 3);
+    PointTable now;
+    for (const double room : {0.0, 1.0, 2.0}) {
+      const double change = room == 1.0 ? patch : 0.0;
+      PointTable walls = wall(random, {.gain = 1.0 + 0.15 * room, .bias = 35.0 * room, .patch = change});
+      for (Vector3f& p_W : walls.points) p_W.y() += 6.0F * static_cast<float>(room);
+      append(now, walls);
+    }
+    const VisitChanges found = changes_between(before, now, before.points);
+    ASSERT_EQ(found.changes.size(), patch > 0.0 ? 1u : 0u);
+    for (const VisitChange& change : found.changes)
+      EXPECT_LT((change.position_W - Vector3d(1.52, 10.02, 1.02)).norm(), 0.1) << "to a voxel";
+  }
+}
+
 TEST(VisitChanges, TellAHotThingThatWasNotThere) {
   const VisitChanges found = between({.box = true});
   ASSERT_EQ(found.changes.size(), 1u);
@@ -79,11 +118,11 @@ TEST(VisitChanges, SayNothingWhereTheVisitsShareTooLittle) {
   PointTable before = wall(random), elsewhere = wall(random);
   for (Vector3f& p : elsewhere.points) p.x() += 50.0F;
   const VisitChanges found = changes_between(before, elsewhere, before.points);
-  EXPECT_FALSE(found.drift.holds);
+  EXPECT_EQ(found.drift_covered, 0.0);
   EXPECT_EQ(found.shared, 0);
   EXPECT_FALSE(found.same_site);
   EXPECT_TRUE(found.changes.empty());
-  EXPECT_FALSE(changes_between({}, {}, {}).drift.holds);
+  EXPECT_EQ(changes_between({}, {}, {}).drift_covered, 0.0);
 }
 
 }  // namespace

@@ -40,14 +40,16 @@ Voxels voxels_of(const PointTable& table, std::string_view value, const VisitCha
   return voxels;
 }
 
-AnchorFit drift_between(const Voxels& before, const Voxels& now, const VisitChangesConfig& config) {
-  std::vector<AnchorPair> pairs;
+VisitDrift drift_between(const Voxels& before, const Voxels& now, const VisitChangesConfig& config) {
+  std::vector<SharedVoxel> shared;
   for (const auto& [key, seen] : now)
     if (const auto found = before.find(key); found != before.end())
-      pairs.push_back({.now = static_cast<float>(seen.mean()),
-                       .normal = static_cast<float>(found->second.mean()),
-                       .normal_variance = static_cast<float>(found->second.mean_variance() / 10.0)});
-  return anchor_curve(pairs, {}, config.drift);
+      shared.push_back({.p_W = seen.mean_W(),
+                        .before = found->second.mean(),
+                        .now = seen.mean(),
+                        .sigma_before = std::sqrt(found->second.mean_variance()),
+                        .sigma_now = std::sqrt(seen.mean_variance())});
+  return {shared, config.drift};
 }
 
 struct Changed {
@@ -56,20 +58,17 @@ struct Changed {
   double change, sigmas;
 };
 
-/// Variance of a later intensity brought to the earlier visit's: of what was seen, and of the curve that brings it.
-double brought_variance(const Known& seen, const AnchorFit& drift) {
-  return seen.mean_variance() + std::pow(drift.spread, 2) + std::pow(drift.curve.doubt(seen.mean()), 2);
-}
-
 /// Changes of surfaces that both visits saw, by at least the gate. At seams one of two neighbouring voxels may hold
 /// what the other held: a change that a neighbour's past explains is none.
-void add_known(const Voxels& before, const Voxels& now, const VisitChanges& result, const VisitChangesConfig& config,
+void add_known(const Voxels& before, const Voxels& now, const VisitDrift& drift, const VisitChangesConfig& config,
                std::map<VoxelKey, Changed>& changed) {
   for (const auto& [key, seen] : now) {
     const auto past = before.find(key);
     if (past == before.end()) continue;
-    const double value = result.drift.curve(seen.mean()), change = value - past->second.mean();
-    const double sigma = std::sqrt(past->second.mean_variance() + brought_variance(seen, result.drift));
+    const auto brought = drift.bring(seen.mean_W(), seen.mean());
+    if (!brought) continue;
+    const double value = brought->value, change = value - past->second.mean();
+    const double sigma = std::hypot(std::sqrt(past->second.mean_variance() + seen.mean_variance()), brought->sigma);
     if (std::abs(change) < std::max(config.min_change, config.gate_sigmas * sigma)) continue;
     bool explained = false;
     for_neighbours(key, 1, [&](VoxelKey next) {
@@ -83,8 +82,8 @@ void add_known(const Voxels& before, const Voxels& now, const VisitChanges& resu
 }
 
 /// Surfaces that the first visit's LiDAR did not know amid others that it knew.
-void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& known_before,
-             const VisitChanges& result, const VisitChangesConfig& config, std::map<VoxelKey, Changed>& changed) {
+void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& known_before, const VisitDrift& drift,
+             const VisitChangesConfig& config, std::map<VoxelKey, Changed>& changed) {
   const int reach = std::max(1, static_cast<int>(config.surround_m / config.voxel_m));
   for (const auto& [key, seen] : now) {
     int near = 0;
@@ -96,8 +95,10 @@ void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& 
     });
     const auto surroundings = surroundings_of(std::move(around));
     if (!surroundings) continue;
-    const double change = result.drift.curve(seen.mean()) - surroundings->upper;
-    const double sigma = std::hypot(surroundings->spread, std::sqrt(brought_variance(seen, result.drift)));
+    const auto brought = drift.bring(seen.mean_W(), seen.mean());
+    if (!brought) continue;
+    const double change = brought->value - surroundings->upper;
+    const double sigma = std::hypot(surroundings->spread, std::sqrt(seen.mean_variance()), brought->sigma);
     if (change > std::max(config.min_change, config.gate_sigmas * sigma))
       changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma});
   }
@@ -132,18 +133,18 @@ std::vector<VisitChange> clusters(std::map<VoxelKey, Changed> changed, int min_v
 VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Vector3f> before_points_W,
                              const VisitChangesConfig& config) {
   const Voxels past = voxels_of(before, "normal", config), present = voxels_of(now, "intensity", config);
-  VisitChanges result{.drift = drift_between(past, present, config)};
+  const VisitDrift drift = drift_between(past, present, config);
+  VisitChanges result{.drift = drift.whole(), .drift_covered = drift.covered()};
   for (const auto& [key, known] : present) ++(past.contains(key) ? result.shared : result.only_now);
   result.only_before = static_cast<int>(past.size()) - result.shared;
   result.seen_again =
       result.shared / std::max(1.0, double(result.shared + std::min(result.only_before, result.only_now)));
   result.same_site = result.seen_again >= config.least_seen_again;
-  if (!result.drift.holds) return result;
   std::set<VoxelKey> known_before;
   for (const Vector3f& p_W : before_points_W) known_before.insert(voxel_key(voxel_of(p_W, 1.0 / config.voxel_m)));
   std::map<VoxelKey, Changed> changed;
-  add_known(past, present, result, config, changed);
-  add_new(past, present, known_before, result, config, changed);
+  add_known(past, present, drift, config, changed);
+  add_new(past, present, known_before, drift, config, changed);
   result.changes = clusters(std::move(changed), config.min_voxels);
   return result;
 }

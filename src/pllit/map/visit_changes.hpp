@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pllit/map/anchor.hpp"
+#include "pllit/map/visit_drift.hpp"
 #include "pllit/state/table.hpp"
 
 namespace pllit {
@@ -29,8 +29,7 @@ struct VisitChangesConfig {
   /// Share of the smaller visit's surfaces that the other must have seen: rooms of one building style fit onto each
   /// other here and there, but what one visit saw of a site, another sees again.
   double least_seen_again = 0.3;
-  /// Of what came in between: weather, gain. A map is the mean of many images, whose curves bend differently.
-  AnchorConfig drift{.loss = 20.0, .min_pairs = 60, .min_share = 0.4, .curve_slope_doubt = 0.15};
+  VisitDriftConfig drift{};
 };
 
 /// A cluster of changed voxels; changes in the unit of the first map, signed.
@@ -43,11 +42,12 @@ struct VisitChange {
 };
 
 struct VisitChanges {
-  AnchorFit drift{};  ///< second visit's intensities to the first's, over surfaces that both saw
+  AnchorFit drift{};           ///< second visit's intensities to the first's, over all surfaces that both saw
+  double drift_covered = 0.0;  ///< share of those whose drift, there or as a whole, is known; the others are not judged
   int shared = 0, only_before = 0, only_now = 0;  ///< voxels
   double seen_again = 0.0;                        ///< share of the smaller visit's voxels that are shared
   bool same_site = false;                         ///< enough of them
-  std::vector<VisitChange> changes{};             ///< greatest first; empty where the drift does not hold
+  std::vector<VisitChange> changes{};             ///< greatest first
 };
 
 /// Compares two maps as ThermalMap::table gives them, the second moved into the first's world. `before_points_W` is
