@@ -1,4 +1,5 @@
 // pllit eval: scores an estimated trajectory against the true one.
+#include <cmath>
 #include <cstdio>
 #include <format>
 #include <map>
@@ -9,6 +10,7 @@
 #include "findings.hpp"
 #include "pllit/eval/evaluate.hpp"
 #include "pllit/eval/scores_json.hpp"
+#include "pllit/io/csv.hpp"
 #include "pllit/io/tum.hpp"
 #include "program.hpp"
 
@@ -16,7 +18,7 @@ namespace pllit::app {
 namespace {
 
 struct EvalOptions {
-  std::string truth, estimate, scene;
+  std::string truth, estimate, scene, errors;
   EvaluationConfig evaluation;
   bool json = false;
 };
@@ -51,6 +53,22 @@ std::string json_of(const Scores& scores) {
   return json.dump(2) + "\n";
 }
 
+/// Every error on its own: a row for each pose (measure "ape") and each pair of poses ("rpe").
+Expected<void> write_errors(const std::string& path, const Scores& scores) {
+  const std::vector<std::string> columns{"measure", "delta_m", "distance_m", "error_m", "yaw_deg", "rotation_deg"};
+  std::vector<std::vector<CsvCell>> rows;
+  for (const ErrorSample& e : scores.ape.samples)
+    rows.push_back({"ape", std::nan(""), e.distance_m, e.error_W_m.norm(), e.yaw_deg, e.rotation_deg});
+  for (const RelativeError& error : scores.rpe)
+    for (const RelativeSample& e : error.samples)
+      rows.push_back({"rpe", error.delta_m, e.distance_m, e.error_m, e.yaw_deg, e.rotation_deg});
+  auto file = CsvWriter::create(path, columns);
+  if (!file) return std::unexpected(file.error());
+  for (const auto& row : rows)
+    if (auto written = file->append(row); !written) return written;
+  return file->close();
+}
+
 /// With --findings the one path that is given is a session.
 ExitCode run_findings(const EvalOptions& options) {
   if (!options.estimate.empty()) return report(input_error("eval --findings takes one session, not two paths").error());
@@ -66,6 +84,8 @@ ExitCode run(const EvalOptions& options) {
   if (!options.scene.empty()) return run_findings(options);
   const auto scores = scores_of(options);
   if (!scores) return report(scores.error());
+  if (!options.errors.empty())
+    if (const auto written = write_errors(options.errors, *scores); !written) return report(written.error());
   std::fputs((options.json ? json_of(*scores) : text_of(*scores)).c_str(), stdout);
   return ExitCode::done;
 }
@@ -93,11 +113,13 @@ Verb add_eval(CLI::App& program) {
   verb->add_option("--rpe", options->evaluation.rpe_deltas_m,
                    "Distances over which the drift is measured (default 10 100)")
       ->type_name("METRES");
+  verb->add_option("--errors", options->errors, "Also write each single error, for plots")->type_name("F.csv");
   verb->add_flag("--json", options->json, "Print JSON");
   verb->footer(
       "Examples:\n"
       "  pllit eval truth.tum results/latest/trajectory.tum\n"
       "  pllit eval truth.tum estimate.tum --align yaw --rpe 10 50 100 --json\n"
+      "  pllit eval truth.tum estimate.tum --errors errors.csv\n"
       "  pllit eval --findings a1.scene.json results/latest");
   return {verb, [options] { return run(*options); }};
 }

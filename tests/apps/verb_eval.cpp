@@ -1,9 +1,12 @@
 #include <cmath>
 #include <format>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "pllit/io/anomalies_file.hpp"
+#include "pllit/io/csv.hpp"
 #include "run_program.hpp"
 
 namespace pllit {
@@ -40,6 +43,26 @@ TEST_F(EvalVerb, GivesZeroForTheTruthItself) {
   ASSERT_EQ(json["rpe"].size(), 2u);
   EXPECT_EQ(json["rpe"][0]["delta_m"], 10.0);
   EXPECT_NEAR(json["rpe"][0]["rmse"].get<double>(), 0.0, 1e-8);
+}
+
+TEST_F(EvalVerb, WritesEachErrorThatItsFiguresAreMadeOf) {
+  const std::string longer = walk("longer.tum", [](double x, double y) { return std::array{1.01 * x, 1.01 * y, 0.0}; });
+  const std::string file = write("errors.csv", "of an earlier call\n");
+  const auto [exit_code, out, err] = run({"eval", truth(), longer, "--rpe", "5", "--errors", file, "--json"});
+  ASSERT_EQ(exit_code, 0) << err;
+  const auto table = read_csv(file);
+  ASSERT_TRUE(table) << table.error().message;
+  const auto json = nlohmann::json::parse(out);
+  std::map<std::string, std::vector<double>> squares;
+  for (const auto& row : table->rows) squares[row[0]].push_back(std::pow(std::stod(row[3]), 2));
+  const auto rmse = [&](const std::string& measure) {
+    const auto& all = squares[measure];
+    return std::sqrt(std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size()));
+  };
+  EXPECT_EQ(squares["ape"].size(), json["matched"]);
+  EXPECT_NEAR(rmse("ape"), json["ape"]["rmse"].get<double>(), 1e-6);
+  EXPECT_EQ(squares["rpe"].size(), json["rpe"][0]["pairs"]);
+  EXPECT_NEAR(rmse("rpe"), json["rpe"][0]["rmse"].get<double>(), 1e-6);
 }
 
 TEST_F(EvalVerb, AlignsAsAsked) {

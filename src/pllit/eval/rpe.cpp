@@ -38,24 +38,31 @@ std::optional<std::size_t> partner_of(const std::vector<double>& distances_m, st
 
 RelativeError relative_error(std::span<const PosePair> pairs, double delta_m) {
   const std::vector<double> distances_m = distances_of(pairs);
-  std::vector<double> lengths_m, percents, yaws_deg, angles_deg;
+  RelativeError error{.delta_m = delta_m};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto j = partner_of(distances_m, i, delta_m);
     if (!j) continue;
     const PosePair &from = pairs[i], &to = pairs[*j];
     const SE3 E = (from.T_W_I.inverse() * to.T_W_I).inverse() * (from.T_V_I.inverse() * to.T_V_I);
     const SO3 R_W_I = to.T_W_I.asSO3();
-    lengths_m.push_back(E.translation().norm());
-    percents.push_back(100.0 * lengths_m.back() / (distances_m[*j] - distances_m[i]));
-    yaws_deg.push_back(yaw_deg(R_W_I * E.asSO3() * R_W_I.inverse()));
-    angles_deg.push_back(angle_deg(E.asSO3()));
+    const double error_m = E.translation().norm();
+    error.samples.push_back({.distance_m = distances_m[i],
+                             .error_m = error_m,
+                             .percent = 100.0 * error_m / (distances_m[*j] - distances_m[i]),
+                             .yaw_deg = yaw_deg(R_W_I * E.asSO3() * R_W_I.inverse()),
+                             .rotation_deg = angle_deg(E.asSO3())});
   }
-  return {delta_m,
-          lengths_m.size(),
-          statistics_of(lengths_m).rmse,
-          statistics_of(percents).rmse,
-          statistics_of(yaws_deg).rmse,
-          statistics_of(angles_deg).rmse};
+  const auto rmse = [&](double RelativeSample::* figure) {
+    std::vector<double> figures;
+    for (const RelativeSample& sample : error.samples) figures.push_back(sample.*figure);
+    return statistics_of(figures).rmse;
+  };
+  error.pairs = error.samples.size();
+  error.rmse_m = rmse(&RelativeSample::error_m);
+  error.percent = rmse(&RelativeSample::percent);
+  error.yaw_deg = rmse(&RelativeSample::yaw_deg);
+  error.rotation_deg = rmse(&RelativeSample::rotation_deg);
+  return error;
 }
 
 }  // namespace pllit

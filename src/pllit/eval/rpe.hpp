@@ -2,10 +2,17 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "pllit/eval/associate.hpp"
 
 namespace pllit {
+
+/// One pair, for plots and for intervals of confidence.
+struct RelativeSample {
+  double distance_m = 0.0;  ///< travelled up to its first pose, along the matched truth
+  double error_m = 0.0, percent = 0.0, yaw_deg = 0.0, rotation_deg = 0.0;
+};
 
 /// Over all pairs (i, j) whose path along the matched truth is `delta_m`: from every i the j nearest to it, kept where
 /// the path differs by at most a tenth of delta. With E = (T_i^-1 T_j)_truth^-1 (T_i^-1 T_j)_estimate, the same as
@@ -17,6 +24,7 @@ struct RelativeError {
   double percent = 0.0;       ///< root mean square of that length in percent of the pair's own path, close to delta
   double yaw_deg = 0.0;       ///< root mean square of E's turn about the z axis of the truth's world
   double rotation_deg = 0.0;  ///< root mean square of E's whole angle
+  std::vector<RelativeSample> samples{};
 };
 
 /// Alignment of the pairs makes no difference.
