@@ -55,15 +55,15 @@ def keep_within(folder, limit_bytes):
         bag.unlink()
 
 
-def recording(row, seed, wanted):
-    """The bag of a row and seed, rendered where the cache has none."""
+def recording(row, seed, wanted, duration=None):
+    """The bag of a row and seed, whole or its first seconds, rendered where the cache has none."""
     folder = wanted.out / "recordings"
     folder.mkdir(parents=True, exist_ok=True)
-    bag = folder / f"{row['name']}-{seed}.bag"
+    bag = folder / (f"{row['name']}-{seed}" + (f"-{duration:g}s" if duration else "") + ".bag")
     if not bag.exists() or not bag.with_suffix(".scene.json").exists():
         part = bag.with_name("unfinished-" + bag.name)
-        subprocess.run([PLLIT, "simulate", row["name"], "--seed", str(seed), "--jpeg", "95", "--overwrite", "--out", str(part)], check=True,
-                       stdout=subprocess.DEVNULL)
+        command = [PLLIT, "simulate", row["name"], "--seed", str(seed), "--jpeg", "95", "--overwrite", "--out", str(part)]
+        subprocess.run(command + (["--duration", str(duration)] if duration else []), check=True, stdout=subprocess.DEVNULL)
         for file in folder.glob(part.stem + ".*"):
             file.rename(file.with_name(file.name.removeprefix("unfinished-")))
         keep_within(folder, wanted.cache_gb * 1e9)

@@ -70,7 +70,7 @@ void report_speeds(double seconds) {
            Line{"Mid-360, IMU and thermal 640x512, room", "sim:room?rig=inspection"},
            Line{"Mid-360, IMU and thermal 640x512, plant", "sim:plant?rig=inspection"},
            Line{"Horizon and IMU, street", "sim:street?rig=ntu4dradlm&images=none"},
-           Line{"Horizon, IMU and thermal 640x512, street", "sim:street?rig=ntu4dradlm&cars=6&people=8"},
+           Line{"Horizon, IMU and thermal 640x480, street", "sim:street?rig=ntu4dradlm&cars=6&people=8"},
        })
     report_speed(what, std::format("{}&seed=1&duration={}", address, seconds));
 }

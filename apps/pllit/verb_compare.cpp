@@ -1,4 +1,5 @@
 // pllit compare: what has changed since an earlier visit.
+#include <spdlog/spdlog.h>
 #include <cstdio>
 #include <format>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "pllit/io/ply.hpp"
 #include "pllit/io/session.hpp"
 #include "pllit/map/visit_changes.hpp"
+#include "pllit/slam/config_yaml.hpp"
 #include "pllit/slam/relocalisation.hpp"
 #include "program.hpp"
 
@@ -26,7 +28,25 @@ struct CompareOptions {
 struct Visit {
   VisitMap map;
   PointTable heat;
+  std::vector<Sightline> sightlines_W;
 };
+
+/// Where the LiDAR stood when it measured each point of the map. Before the first pose and where the run was killed
+/// before it wrote down the rig, that is not known.
+std::vector<Sightline> sightlines_of(const Session& session) {
+  const auto* times_s = find_field(session.map, "time");
+  if (!session.run || !times_s || session.odometry.empty()) return {};
+  const auto config = load_config(session.run->value("config", ""), "run.json");
+  if (!config) return {};
+  const SE3 T_I_L = make_rig(config->rig).T_I_L;
+  std::vector<Sightline> lines_W;
+  for (std::size_t i = 0; i < session.map.points.size(); ++i) {
+    const Time time = session.odometry.front().time + from_seconds(static_cast<double>((*times_s)[i]));
+    if (const auto T_W_I = pose_at(session.trajectory, time, std::chrono::seconds(1)))
+      lines_W.push_back({(*T_W_I * T_I_L).translation().cast<float>(), session.map.points[i]});
+  }
+  return lines_W;
+}
 
 Expected<Visit> read_visit(const fs::path& folder) {
   auto session = open_session(folder);
@@ -35,7 +55,12 @@ Expected<Visit> read_visit(const fs::path& folder) {
     return input_error(std::format("'{}' holds no thermal_map.ply: that run saw no images", folder.string()));
   auto heat = read_ply(folder / "thermal_map.ply");
   if (!heat) return std::unexpected(heat.error());
-  return Visit{{std::move(session->trajectory), std::move(session->map.points)}, std::move(*heat)};
+  auto sightlines_W = sightlines_of(*session);
+  if (sightlines_W.empty())
+    spdlog::warn("'{}' does not say where its LiDAR was on the rig: new surfaces are not judged against it",
+                 folder.string());
+  return Visit{
+      {std::move(session->trajectory), std::move(session->map.points)}, std::move(*heat), std::move(sightlines_W)};
 }
 
 Json change_json(const VisitChange& change) {
@@ -54,7 +79,7 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
   const auto located = relocalise(baseline.map, visit->map);
   if (!located) return in_context(std::format("comparing '{}'", folder), located.error());
   for (Vector3f& p_W : visit->heat.points) p_W = located->T_A_B.act(p_W.cast<double>()).cast<float>();
-  const VisitChanges found = changes_between(baseline.heat, visit->heat, baseline.map.points_W);
+  const VisitChanges found = changes_between(baseline.heat, visit->heat, baseline.sightlines_W);
   if (!found.same_site)
     return input_error(
         std::format("comparing '{}': where it fits onto '{}' only {:.0f} % of its surfaces lie on surfaces seen there; "

@@ -62,10 +62,19 @@ PointTable repeated(const PointTable& room, int times) {
   return rooms;
 }
 
-VisitChanges between(const Difference& difference) {
+/// As a LiDAR measured it from one place.
+std::vector<Sightline> seen_from(const Vector3f& p_W, const PointTable& table) {
+  std::vector<Sightline> lines_W;
+  for (const Vector3f& point_W : table.points) lines_W.push_back({p_W, point_W});
+  return lines_W;
+}
+
+const Vector3f kBefore(1.5F, 1.0F, 1.0F);  // the wall, on the side of the hot thing
+
+VisitChanges between(const Difference& difference, const Vector3f& lidar_W = kBefore) {
   Random random(1);
   const PointTable before = wall(random);
-  return changes_between(before, wall(random, difference), before.points);
+  return changes_between(before, wall(random, difference), seen_from(lidar_W, before));
 }
 
 TEST(VisitChanges, AreNoneWhereOnlyTheWeatherChanged) {
@@ -99,7 +108,7 @@ TEST(VisitChanges, AreSeenWhereTheScaleWandersFromRoomToRoom) {
       for (Vector3f& p_W : walls.points) p_W.y() += 6.0F * static_cast<float>(room);
       append(now, walls);
     }
-    const VisitChanges found = changes_between(before, now, before.points);
+    const VisitChanges found = changes_between(before, now, seen_from(kBefore, before));
     ASSERT_EQ(found.changes.size(), patch > 0.0 ? 1u : 0u);
     for (const VisitChange& change : found.changes)
       EXPECT_LT((change.position_W - Vector3d(1.52, 10.02, 1.02)).norm(), 0.1) << "to a voxel";
@@ -113,11 +122,30 @@ TEST(VisitChanges, TellAHotThingThatWasNotThere) {
   EXPECT_LT((found.changes.front().position_W - Vector3d(0.92, 3.52, 0.92)).norm(), 0.06);
 }
 
+TEST(VisitChanges, AreNotClaimedOfAPlaceThatTheFirstVisitDidNotLookThrough) {
+  EXPECT_TRUE(between({.box = true}, {1.5F, 7.0F, 1.0F}).changes.empty()) << "from behind the wall";
+}
+
+TEST(VisitChanges, AreNotMissedForBeingBrighterThanTheCameraShows) {
+  Random random(4);
+  const PointTable before = wall(random);
+  PointTable now = wall(random, {.patch = 70.0});
+  auto &sigma = now.fields[2].values, saturated = std::vector<float>(sigma.size(), 0.0F);
+  for (std::size_t i = 0; i < sigma.size(); ++i)
+    if (now.fields[0].values[i] > 165.0F) {
+      saturated[i] = 1.0F;
+      sigma[i] = 60.2F;
+    }
+  EXPECT_TRUE(changes_between(before, now, seen_from(kBefore, before)).changes.empty());
+  now.fields.push_back({"saturated", saturated});
+  EXPECT_EQ(changes_between(before, now, seen_from(kBefore, before)).changes.size(), 1u);
+}
+
 TEST(VisitChanges, SayNothingWhereTheVisitsShareTooLittle) {
   Random random(2);
   PointTable before = wall(random), elsewhere = wall(random);
   for (Vector3f& p : elsewhere.points) p.x() += 50.0F;
-  const VisitChanges found = changes_between(before, elsewhere, before.points);
+  const VisitChanges found = changes_between(before, elsewhere, seen_from(kBefore, before));
   EXPECT_EQ(found.drift_covered, 0.0);
   EXPECT_EQ(found.shared, 0);
   EXPECT_FALSE(found.same_site);

@@ -140,6 +140,18 @@ TEST(SimulatedWorlds, AreVisitedAgainOnAnotherWalk) {
   EXPECT_GT(first_image(*warmer), first_image(*again) + 50.0);
 }
 
+TEST(SimulatedWorlds, AreFurnishedAlikeWhetherAFindingHasBegunOrIsYetToCome) {
+  for (const std::string row : {"room?finding=table", "plant?finding=pipe"}) {
+    const std::string place = "sim:" + row + "&rig=inspection&images=none&seed=3";
+    auto before = open_simulation(place + "&finding_at=3000"), after = open_simulation(place + "&finding_at=0&visit=1");
+    ASSERT_TRUE(before && after);
+    const auto then = before->scene_truth().objects, now = after->scene_truth().objects;
+    ASSERT_EQ(then.size(), now.size());
+    for (std::size_t i = 0; i < now.size(); ++i)
+      EXPECT_LT((then[i].centroid_W - now[i].centroid_W).norm(), 0.3) << row << ": " << now[i].name;
+  }
+}
+
 TEST(SimulatedWorlds, AreKnownExactlyOnlyWhereTheyAreIdeal) {
   auto ideal = open_simulation("sim:room?duration=3&ideal=1&images=none");
   ASSERT_TRUE(ideal);

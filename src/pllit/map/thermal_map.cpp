@@ -88,20 +88,21 @@ Vector3d ThermalMap::position_W(VoxelKey key, const ThermalVoxel& voxel) const {
 }
 
 std::vector<std::string> ThermalMap::fields() {
-  return {"intensity", "normal", "sigma", "raw", "images", "views", "change_sigmas", "seen_s"};
+  return {"intensity", "normal", "sigma", "raw", "images", "views", "change_sigmas", "seen_s", "saturated"};
 }
 
 void ThermalMap::append(PointTable& table, VoxelKey key, const ThermalVoxel& voxel, Time start) const {
   table.points.push_back(position_W(key, voxel).cast<float>());
   const float sigma = voxel.sigma(config_.model);
-  const std::array<float, 8> values{voxel.present(),
+  const std::array<float, 9> values{voxel.present(),
                                     voxel.mean,
                                     sigma,
                                     voxel.raw,
                                     static_cast<float>(voxel.images),
                                     static_cast<float>(voxel.views),
                                     (voxel.present() - voxel.mean) / sigma,
-                                    static_cast<float>(to_seconds(voxel.last_seen - start))};
+                                    static_cast<float>(to_seconds(voxel.last_seen - start)),
+                                    voxel.saturated};
   for (std::size_t i = 0; i < values.size(); ++i) table.fields[i].values.push_back(values[i]);
 }
 

@@ -15,18 +15,20 @@ namespace {
 /// What a visit knows of a voxel: means over the points of its table that were seen often enough.
 struct Known {
   Vector3d sum_W = Vector3d::Zero();
-  double value = 0.0, variance = 0.0;
+  double value = 0.0, variance = 0.0, variance_below = 0.0;
   int points = 0;
 
   Vector3d mean_W() const { return sum_W / points; }
   double mean() const { return value / points; }
   double mean_variance() const { return variance / points; }
+  /// Without what saturation adds: the surface may be brighter than it showed, not darker.
+  double mean_variance_below() const { return variance_below / points; }
 };
 using Voxels = std::map<VoxelKey, Known>;
 
 Voxels voxels_of(const PointTable& table, std::string_view value, const VisitChangesConfig& config) {
   const auto *values = find_field(table, value), *images = find_field(table, "images"),
-             *sigmas = find_field(table, "sigma");
+             *sigmas = find_field(table, "sigma"), *saturated = find_field(table, "saturated");
   Voxels voxels;
   if (!values || !images || !sigmas) return voxels;
   for (std::size_t i = 0; i < table.points.size(); ++i) {
@@ -34,7 +36,10 @@ Voxels voxels_of(const PointTable& table, std::string_view value, const VisitCha
     Known& known = voxels[voxel_key(voxel_of(table.points[i], 1.0 / config.voxel_m))];
     known.sum_W += table.points[i].cast<double>();
     known.value += static_cast<double>((*values)[i]);
-    known.variance += std::pow(static_cast<double>((*sigmas)[i]), 2);
+    const double variance = std::pow(static_cast<double>((*sigmas)[i]), 2);
+    const double doubt = saturated ? config.saturated_doubt * static_cast<double>((*saturated)[i]) : 0.0;
+    known.variance += variance;
+    known.variance_below += std::max(0.0, variance - doubt * doubt);
     ++known.points;
   }
   return voxels;
@@ -64,11 +69,13 @@ void add_known(const Voxels& before, const Voxels& now, const VisitDrift& drift,
                std::map<VoxelKey, Changed>& changed) {
   for (const auto& [key, seen] : now) {
     const auto past = before.find(key);
-    if (past == before.end()) continue;
+    if (past == before.end() || (past->second.mean_W() - seen.mean_W()).norm() > config.same_place_m) continue;
     const auto brought = drift.bring(seen.mean_W(), seen.mean());
     if (!brought) continue;
     const double value = brought->value, change = value - past->second.mean();
-    const double sigma = std::hypot(std::sqrt(past->second.mean_variance() + seen.mean_variance()), brought->sigma);
+    const double variance = change > 0.0 ? past->second.mean_variance() + seen.mean_variance_below()
+                                         : past->second.mean_variance_below() + seen.mean_variance();
+    const double sigma = std::hypot(std::sqrt(variance), brought->sigma);
     if (std::abs(change) < std::max(config.min_change, config.gate_sigmas * sigma)) continue;
     bool explained = false;
     for_neighbours(key, 1, [&](VoxelKey next) {
@@ -98,10 +105,22 @@ void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& 
     const auto brought = drift.bring(seen.mean_W(), seen.mean());
     if (!brought) continue;
     const double change = brought->value - surroundings->upper;
-    const double sigma = std::hypot(surroundings->spread, std::sqrt(seen.mean_variance()), brought->sigma);
+    const double sigma = std::hypot(surroundings->spread, std::sqrt(seen.mean_variance_below()), brought->sigma);
     if (change > std::max(config.min_change, config.gate_sigmas * sigma))
       changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma});
   }
+}
+
+/// Whether the first visit looked through most of a cluster: what its sightlines brush past at the edges may have been
+/// there.
+bool seen_through(const std::vector<Changed>& cluster, std::span<const Sightline> before_W,
+                  const VisitChangesConfig& config) {
+  const auto radius_m = static_cast<float>(0.5 * config.voxel_m), behind_m = static_cast<float>(config.behind_m);
+  const auto passed = std::ranges::count_if(cluster, [&](const Changed& one) {
+    const Vector3f p_W = one.p_W.cast<float>();
+    return std::ranges::any_of(before_W, [&](const Sightline& line) { return passes(line, p_W, radius_m, behind_m); });
+  });
+  return static_cast<double>(passed) >= config.seen_through * static_cast<double>(cluster.size());
 }
 
 VisitChange summed(const std::vector<Changed>& cluster) {
@@ -119,18 +138,22 @@ VisitChange summed(const std::vector<Changed>& cluster) {
 }
 
 /// Changed voxels of one kind that hang together, the greatest first.
-std::vector<VisitChange> clusters(std::map<VoxelKey, Changed> changed, int min_voxels) {
+std::vector<VisitChange> clusters(std::map<VoxelKey, Changed> changed, std::span<const Sightline> before_W,
+                                  const VisitChangesConfig& config) {
   const auto same_kind = [](const Changed& a, const Changed& b) { return a.kind == b.kind; };
   std::vector<VisitChange> found;
-  for (const auto& cluster : connected(std::move(changed), same_kind))
-    if (static_cast<int>(cluster.size()) >= min_voxels) found.push_back(summed(cluster));
+  for (const auto& cluster : connected(std::move(changed), same_kind)) {
+    if (static_cast<int>(cluster.size()) < config.min_voxels) continue;
+    if (cluster.front().kind == VisitChangeKind::new_hot && !seen_through(cluster, before_W, config)) continue;
+    found.push_back(summed(cluster));
+  }
   std::ranges::stable_sort(found, std::greater{}, [](const VisitChange& c) { return std::abs(c.mean_sigmas); });
   return found;
 }
 
 }  // namespace
 
-VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Vector3f> before_points_W,
+VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Sightline> before_W,
                              const VisitChangesConfig& config) {
   const Voxels past = voxels_of(before, "normal", config), present = voxels_of(now, "intensity", config);
   const VisitDrift drift = drift_between(past, present, config);
@@ -141,11 +164,11 @@ VisitChanges changes_between(const PointTable& before, const PointTable& now, st
       result.shared / std::max(1.0, double(result.shared + std::min(result.only_before, result.only_now)));
   result.same_site = result.seen_again >= config.least_seen_again;
   std::set<VoxelKey> known_before;
-  for (const Vector3f& p_W : before_points_W) known_before.insert(voxel_key(voxel_of(p_W, 1.0 / config.voxel_m)));
+  for (const Sightline& line : before_W) known_before.insert(voxel_key(voxel_of(line.to_W, 1.0 / config.voxel_m)));
   std::map<VoxelKey, Changed> changed;
   add_known(past, present, drift, config, changed);
   add_new(past, present, known_before, drift, config, changed);
-  result.changes = clusters(std::move(changed), config.min_voxels);
+  result.changes = clusters(std::move(changed), before_W, config);
   return result;
 }
 

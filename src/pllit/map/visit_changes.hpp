@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pllit/map/sightlines.hpp"
 #include "pllit/map/visit_drift.hpp"
 #include "pllit/state/table.hpp"
 
@@ -13,7 +14,7 @@ namespace pllit {
 enum class VisitChangeKind {
   hotter,
   cooler,
-  new_hot  ///< a surface where the first visit had none, hotter than what stands around it
+  new_hot  ///< a surface where the first visit saw through, hotter than what stands around it
 };
 constexpr std::string_view name_of(VisitChangeKind kind) {
   return kind == VisitChangeKind::hotter ? "hotter" : kind == VisitChangeKind::cooler ? "cooler" : "new_hot";
@@ -25,7 +26,13 @@ struct VisitChangesConfig {
   double min_change = 30.0;  ///< in the map's unit
   double gate_sigmas = 3.0;  ///< of the surface's spread and of the drift's fit
   int min_voxels = 4;        ///< smaller clusters are noise
-  double surround_m = 0.8;   ///< how far around a new surface its surroundings are looked at
+  /// Means of a voxel's points on the two visits that lie farther apart are of different surfaces.
+  double same_place_m = 0.05;
+  double seen_through =
+      0.6;                ///< share of a new cluster's voxels that sightlines of the first visit must have passed ...
+  double behind_m = 0.2;  ///< ... and ended at least so far behind
+  double saturated_doubt = 60.0;  ///< what a wholly saturated voxel's sigma contains; see VoxelModelConfig
+  double surround_m = 0.8;        ///< how far around a new surface its surroundings are looked at
   /// Share of the smaller visit's surfaces that the other must have seen: rooms of one building style fit onto each
   /// other here and there, but what one visit saw of a site, another sees again.
   double least_seen_again = 0.3;
@@ -50,10 +57,10 @@ struct VisitChanges {
   std::vector<VisitChange> changes{};             ///< greatest first
 };
 
-/// Compares two maps as ThermalMap::table gives them, the second moved into the first's world. `before_points_W` is
-/// what the first visit's LiDAR saw: a surface counts as new only where that knows the surroundings and not the
-/// surface.
-VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Vector3f> before_points_W,
+/// Compares two maps as ThermalMap::table gives them, the second moved into the first's world. `before_W` is what the
+/// first visit's LiDAR measured, from where: a surface counts as new only where that knows none and was seen through.
+/// What nobody had looked at before may have been hot for ever.
+VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Sightline> before_W,
                              const VisitChangesConfig& config = {});
 
 }  // namespace pllit

@@ -36,7 +36,7 @@ ThermalCameraModel boson_640() {
 
 ThermalCameraModel ntu4dradlm_thermal() {
   ThermalCameraModel model;
-  model.camera = {.width = 640, .height = 512, .fx = 457.2, .fy = 457.9, .cx = 323.1, .cy = 258.5};
+  model.camera = {.width = 640, .height = 480, .fx = 457.2, .fy = 457.9, .cx = 323.1, .cy = 242.5};
   model.rate_hz = 20.0;
   model.netd_K = 0.05;
   return model;

@@ -10,9 +10,8 @@ namespace pllit {
 ThermalCameraModel botu_tb640();
 /// FLIR Boson 640 with the 50 degree lens (8.7 mm): NETD 40 mK. It delivers 60 Hz, here every second frame.
 ThermalCameraModel boson_640();
-/// The thermal camera of NTU4DRadLM: users' K for 640 x 480, whose square pixels suggest a crop of the 640 x 512 image
-/// by 16 rows at the top and bottom; so the optical axis lies 16 px lower here. Video with plateau equalisation;
-/// distortion is assumed to be removed.
+/// The thermal camera of NTU4DRadLM: users' K for 640 x 480, the middle of the sensor's 640 x 512. Video with plateau
+/// equalisation; distortion is assumed to be removed.
 ThermalCameraModel ntu4dradlm_thermal();
 
 /// cam0 of the Hilti-Oxford 2022 rig at 10 Hz: 720 x 540, equidistant (the calibration that FAST-LIVO2 uses).

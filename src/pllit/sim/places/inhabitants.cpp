@@ -123,7 +123,10 @@ Expected<std::vector<Actor>> add_findings(const PlaceConfig& config, const Align
   Random random(config.seed, 70);
   std::vector<Actor> actors;
   const auto spot_after = [&](double after_s, double z_m) {
-    const auto spot = find_spot(config, box_P, kSize_m, z_m, after_s, plan, random);
+    // What only comes after the walk is for another visit, of the same place: it may stand where it would from the
+    // start.
+    const double seen_after_s = after_s < config.duration_s ? after_s : 0.0;
+    const auto spot = find_spot(config, box_P, kSize_m, z_m, seen_after_s, plan, random);
     if (spot) {
       plan.take(footprint(spot->centre, kSize_m, kSize_m), z_m + 0.4);
       take_sight(*spot, plan);
