@@ -1,5 +1,6 @@
 // pllit compare: what has changed since an earlier visit.
 #include <spdlog/spdlog.h>
+#include <algorithm>
 #include <cstdio>
 #include <format>
 #include <memory>
@@ -27,8 +28,7 @@ struct CompareOptions {
 
 struct Visit {
   VisitMap map;
-  PointTable heat;
-  std::vector<Sightline> sightlines_W;
+  VisitHeat seen;
 };
 
 /// Where the LiDAR stood when it measured each point of the map. Before the first pose and where the run was killed
@@ -57,10 +57,19 @@ Expected<Visit> read_visit(const fs::path& folder) {
   if (!heat) return std::unexpected(heat.error());
   auto sightlines_W = sightlines_of(*session);
   if (sightlines_W.empty())
-    spdlog::warn("'{}' does not say where its LiDAR was on the rig: new surfaces are not judged against it",
+    spdlog::warn("'{}' does not say where its LiDAR was on the rig: what is new or gone cannot be told by it",
                  folder.string());
   return Visit{
       {std::move(session->trajectory), std::move(session->map.points)}, std::move(*heat), std::move(sightlines_W)};
+}
+
+void move(VisitHeat& seen, const SE3& T_A_B) {
+  const auto move_point = [&](Vector3f& p) { p = T_A_B.act(p.cast<double>()).cast<float>(); };
+  std::ranges::for_each(seen.heat.points, move_point);
+  for (Sightline& line : seen.sightlines_W) {
+    move_point(line.from_W);
+    move_point(line.to_W);
+  }
 }
 
 Json change_json(const VisitChange& change) {
@@ -78,8 +87,8 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
   if (!visit) return std::unexpected(visit.error());
   const auto located = relocalise(baseline.map, visit->map);
   if (!located) return in_context(std::format("comparing '{}'", folder), located.error());
-  for (Vector3f& p_W : visit->heat.points) p_W = located->T_A_B.act(p_W.cast<double>()).cast<float>();
-  const VisitChanges found = changes_between(baseline.heat, visit->heat, baseline.sightlines_W);
+  move(visit->seen, located->T_A_B);
+  const VisitChanges found = changes_between(baseline.seen, visit->seen);
   if (!found.same_site)
     return input_error(
         std::format("comparing '{}': where it fits onto '{}' only {:.0f} % of its surfaces lie on surfaces seen there; "
@@ -119,6 +128,11 @@ std::string visit_text(const Json& visit) {
                         100.0 * covered);
   for (const Json& change : visit["changes"]) {
     const auto p = change["position_m"].get<std::array<double, 3>>();
+    if (change["kind"] == "gone") {
+      text += std::format("  gone     at ({:.2f}, {:.2f}, {:.2f}) m: {} voxels\n", p[0], p[1], p[2],
+                          change["voxels"].get<int>());
+      continue;
+    }
     text += std::format(
         "  {:8} at ({:.2f}, {:.2f}, {:.2f}) m: {:+.1f} on average, {:+.1f} at most, {:.1f} sigma, {} voxels\n",
         change["kind"].get<std::string>(), p[0], p[1], p[2], change["change"]["mean"].get<double>(),

@@ -68,13 +68,10 @@ TEST(AnchorCurve, IsDoubtedBeyondWhatKnownSurfacesShow) {
 
 TEST(AnchorCurve, IsNotHeldByWhatWasItselfLearnedInDoubt) {
   Random random(7);
-  const std::vector<AnchorPair> known = scene(random, 3000, 0.0, bent);
-  for (const float trust : {1e-3F, 0.1F, 0.3F}) {
-    std::vector<AnchorPair> pairs = known;
-    for (AnchorPair& pair : pairs)
-      if (pair.normal > 120.0F) pair.trust = trust;
-    EXPECT_GT(anchor_curve(pairs, {}, {}).curve.doubt(bent(170.0)), 5.0) << "however many there are of it: " << trust;
-  }
+  std::vector<AnchorPair> pairs = scene(random, 3000, 0.0, bent);
+  for (AnchorPair& pair : pairs)
+    if (pair.normal > 120.0F) pair.trust = 1e-3F;
+  EXPECT_GT(anchor_curve(pairs, {}, {}).curve.doubt(bent(170.0)), 5.0);
 }
 
 TEST(AnchorCurve, SaysHowWellTheWholeImageFits) {

@@ -62,19 +62,23 @@ PointTable repeated(const PointTable& room, int times) {
   return rooms;
 }
 
-/// As a LiDAR measured it from one place.
-std::vector<Sightline> seen_from(const Vector3f& p_W, const PointTable& table) {
-  std::vector<Sightline> lines_W;
-  for (const Vector3f& point_W : table.points) lines_W.push_back({p_W, point_W});
-  return lines_W;
+const Vector3f kBeforeTheWall(1.5F, 1.0F, 1.0F), kBehindTheWall(1.5F, 7.0F, 1.0F);
+
+/// With a LiDAR that measured it all from one place.
+VisitHeat seen_from(const Vector3f& lidar_W, const PointTable& table) {
+  VisitHeat visit{.heat = table};
+  for (const Vector3f& p_W : table.points) visit.sightlines_W.push_back({lidar_W, p_W});
+  return visit;
 }
 
-const Vector3f kBefore(1.5F, 1.0F, 1.0F);  // the wall, on the side of the hot thing
+VisitChanges between(const PointTable& before, const PointTable& now) {
+  return changes_between(seen_from(kBeforeTheWall, before), seen_from(kBeforeTheWall, now));
+}
 
-VisitChanges between(const Difference& difference, const Vector3f& lidar_W = kBefore) {
+VisitChanges between(const Difference& difference) {
   Random random(1);
   const PointTable before = wall(random);
-  return changes_between(before, wall(random, difference), seen_from(lidar_W, before));
+  return between(before, wall(random, difference));
 }
 
 TEST(VisitChanges, AreNoneWhereOnlyTheWeatherChanged) {
@@ -108,7 +112,7 @@ TEST(VisitChanges, AreSeenWhereTheScaleWandersFromRoomToRoom) {
       for (Vector3f& p_W : walls.points) p_W.y() += 6.0F * static_cast<float>(room);
       append(now, walls);
     }
-    const VisitChanges found = changes_between(before, now, seen_from(kBefore, before));
+    const VisitChanges found = between(before, now);
     ASSERT_EQ(found.changes.size(), patch > 0.0 ? 1u : 0u);
     for (const VisitChange& change : found.changes)
       EXPECT_LT((change.position_W - Vector3d(1.52, 10.02, 1.02)).norm(), 0.1) << "to a voxel";
@@ -123,7 +127,20 @@ TEST(VisitChanges, TellAHotThingThatWasNotThere) {
 }
 
 TEST(VisitChanges, AreNotClaimedOfAPlaceThatTheFirstVisitDidNotLookThrough) {
-  EXPECT_TRUE(between({.box = true}, {1.5F, 7.0F, 1.0F}).changes.empty()) << "from behind the wall";
+  Random random(1);
+  const PointTable before = wall(random), now = wall(random, {.box = true});
+  EXPECT_TRUE(changes_between(seen_from(kBehindTheWall, before), seen_from(kBeforeTheWall, now)).changes.empty());
+}
+
+TEST(VisitChanges, TellWhatIsGone) {
+  Random random(1);
+  const PointTable before = wall(random, {.box = true}), now = wall(random);
+  const VisitChanges found = between(before, now);
+  ASSERT_EQ(found.changes.size(), 1u);
+  EXPECT_EQ(found.changes.front().kind, VisitChangeKind::gone);
+  EXPECT_LT((found.changes.front().position_W - Vector3d(0.92, 3.52, 0.92)).norm(), 0.06);
+  EXPECT_TRUE(changes_between(seen_from(kBeforeTheWall, before), seen_from(kBehindTheWall, now)).changes.empty())
+      << "what hides may still be there";
 }
 
 TEST(VisitChanges, AreNotMissedForBeingBrighterThanTheCameraShows) {
@@ -136,21 +153,21 @@ TEST(VisitChanges, AreNotMissedForBeingBrighterThanTheCameraShows) {
       saturated[i] = 1.0F;
       sigma[i] = 60.2F;
     }
-  EXPECT_TRUE(changes_between(before, now, seen_from(kBefore, before)).changes.empty());
+  EXPECT_TRUE(between(before, now).changes.empty());
   now.fields.push_back({"saturated", saturated});
-  EXPECT_EQ(changes_between(before, now, seen_from(kBefore, before)).changes.size(), 1u);
+  EXPECT_EQ(between(before, now).changes.size(), 1u);
 }
 
 TEST(VisitChanges, SayNothingWhereTheVisitsShareTooLittle) {
   Random random(2);
   PointTable before = wall(random), elsewhere = wall(random);
   for (Vector3f& p : elsewhere.points) p.x() += 50.0F;
-  const VisitChanges found = changes_between(before, elsewhere, seen_from(kBefore, before));
+  const VisitChanges found = between(before, elsewhere);
   EXPECT_EQ(found.drift_covered, 0.0);
   EXPECT_EQ(found.shared, 0);
   EXPECT_FALSE(found.same_site);
   EXPECT_TRUE(found.changes.empty());
-  EXPECT_EQ(changes_between({}, {}, {}).drift_covered, 0.0);
+  EXPECT_EQ(changes_between({}, {}).drift_covered, 0.0);
 }
 
 }  // namespace

@@ -172,13 +172,12 @@ AnchorCurve refined(std::span<const AnchorPair> pairs, AnchorCurve curve, const 
 void note_support(std::span<const AnchorPair> pairs, const std::vector<double>& residuals, const AnchorConfig& config,
                   AnchorCurve& curve) {
   constexpr double kEnds = 0.01;
-  constexpr float kLeastTrust = 0.5F;
   std::vector<std::pair<double, double>> agreeing;  // intensity without the lens, weight
   double total = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const AnchorPair& pair = pairs[i];
-    if (std::abs(residuals[i]) >= config.loss || pair.trust < kLeastTrust) continue;
-    const auto weight = static_cast<double>(pair.weight);
+    if (std::abs(residuals[i]) >= config.loss) continue;
+    const auto weight = static_cast<double>(pair.weight * pair.trust);
     agreeing.emplace_back(pair.now - curve.lens * pair.radius2, weight);
     total += weight;
   }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <set>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
 #include "pllit/map/surroundings.hpp"
@@ -88,14 +87,12 @@ void add_known(const Voxels& before, const Voxels& now, const VisitDrift& drift,
   }
 }
 
-/// Surfaces that the first visit's LiDAR did not know amid others that it knew.
-void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& known_before, const VisitDrift& drift,
+/// Surfaces where the first visit's LiDAR knew none, amid others whose heat it knew.
+void add_new(const Voxels& before, const Voxels& now, const SeenSpace& space_before, const VisitDrift& drift,
              const VisitChangesConfig& config, std::map<VoxelKey, Changed>& changed) {
   const int reach = std::max(1, static_cast<int>(config.surround_m / config.voxel_m));
   for (const auto& [key, seen] : now) {
-    int near = 0;
-    for_neighbours(key, 2, [&](VoxelKey next) { near += known_before.contains(next) ? 1 : 0; });
-    if (near > 0) continue;
+    if (space_before.surface_at(key)) continue;
     std::vector<double> around;
     for_neighbours(key, reach, [&](VoxelKey next) {
       if (const auto past = before.find(next); past != before.end()) around.push_back(past->second.mean());
@@ -111,16 +108,25 @@ void add_new(const Voxels& before, const Voxels& now, const std::set<VoxelKey>& 
   }
 }
 
-/// Whether the first visit looked through most of a cluster: what its sightlines brush past at the edges may have been
-/// there.
-bool seen_through(const std::vector<Changed>& cluster, std::span<const Sightline> before_W,
-                  const VisitChangesConfig& config) {
-  const auto radius_m = static_cast<float>(0.5 * config.voxel_m), behind_m = static_cast<float>(config.behind_m);
-  const auto passed = std::ranges::count_if(cluster, [&](const Changed& one) {
-    const Vector3f p_W = one.p_W.cast<float>();
-    return std::ranges::any_of(before_W, [&](const Sightline& line) { return passes(line, p_W, radius_m, behind_m); });
+void add_gone(const Voxels& before, const Voxels& now, const SeenSpace& space_now,
+              std::map<VoxelKey, Changed>& changed) {
+  for (const auto& [key, past] : before)
+    if (!now.contains(key) && !space_now.surface_at(key))
+      changed.emplace(key, Changed{VisitChangeKind::gone, past.mean_W(), 0.0, 0.0});
+}
+
+/// Whether a cluster is to be told. Of what a visit's sightlines only brush past at the edges, it says nothing.
+bool counts(const std::vector<Changed>& cluster, const SeenSpace& space_before, const SeenSpace& space_now,
+            const VisitChangesConfig& config) {
+  const VisitChangeKind kind = cluster.front().kind;
+  const int least = kind == VisitChangeKind::gone ? config.gone_voxels : config.min_voxels;
+  if (static_cast<int>(cluster.size()) < least) return false;
+  if (kind != VisitChangeKind::new_hot && kind != VisitChangeKind::gone) return true;
+  const SeenSpace& other = kind == VisitChangeKind::gone ? space_now : space_before;
+  const auto through = std::ranges::count_if(cluster, [&](const Changed& one) {
+    return other.looked_through(voxel_key(voxel_of(one.p_W, 1.0 / config.voxel_m)));
   });
-  return static_cast<double>(passed) >= config.seen_through * static_cast<double>(cluster.size());
+  return static_cast<double>(through) >= config.looked_through * static_cast<double>(cluster.size());
 }
 
 VisitChange summed(const std::vector<Changed>& cluster) {
@@ -138,24 +144,34 @@ VisitChange summed(const std::vector<Changed>& cluster) {
 }
 
 /// Changed voxels of one kind that hang together, the greatest first.
-std::vector<VisitChange> clusters(std::map<VoxelKey, Changed> changed, std::span<const Sightline> before_W,
-                                  const VisitChangesConfig& config) {
+std::vector<VisitChange> clusters(std::map<VoxelKey, Changed> changed, const SeenSpace& space_before,
+                                  const SeenSpace& space_now, const VisitChangesConfig& config) {
   const auto same_kind = [](const Changed& a, const Changed& b) { return a.kind == b.kind; };
   std::vector<VisitChange> found;
-  for (const auto& cluster : connected(std::move(changed), same_kind)) {
-    if (static_cast<int>(cluster.size()) < config.min_voxels) continue;
-    if (cluster.front().kind == VisitChangeKind::new_hot && !seen_through(cluster, before_W, config)) continue;
-    found.push_back(summed(cluster));
-  }
+  for (const auto& cluster : connected(std::move(changed), same_kind))
+    if (counts(cluster, space_before, space_now, config)) found.push_back(summed(cluster));
   std::ranges::stable_sort(found, std::greater{}, [](const VisitChange& c) { return std::abs(c.mean_sigmas); });
   return found;
 }
 
 }  // namespace
 
-VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Sightline> before_W,
-                             const VisitChangesConfig& config) {
-  const Voxels past = voxels_of(before, "normal", config), present = voxels_of(now, "intensity", config);
+std::string_view name_of(VisitChangeKind kind) {
+  switch (kind) {
+    case VisitChangeKind::hotter:
+      return "hotter";
+    case VisitChangeKind::cooler:
+      return "cooler";
+    case VisitChangeKind::new_hot:
+      return "new_hot";
+    case VisitChangeKind::gone:
+      break;
+  }
+  return "gone";
+}
+
+VisitChanges changes_between(const VisitHeat& before, const VisitHeat& now, const VisitChangesConfig& config) {
+  const Voxels past = voxels_of(before.heat, "normal", config), present = voxels_of(now.heat, "intensity", config);
   const VisitDrift drift = drift_between(past, present, config);
   VisitChanges result{.drift = drift.whole(), .drift_covered = drift.covered()};
   for (const auto& [key, known] : present) ++(past.contains(key) ? result.shared : result.only_now);
@@ -163,12 +179,14 @@ VisitChanges changes_between(const PointTable& before, const PointTable& now, st
   result.seen_again =
       result.shared / std::max(1.0, double(result.shared + std::min(result.only_before, result.only_now)));
   result.same_site = result.seen_again >= config.least_seen_again;
-  std::set<VoxelKey> known_before;
-  for (const Sightline& line : before_W) known_before.insert(voxel_key(voxel_of(line.to_W, 1.0 / config.voxel_m)));
+  if (!result.same_site) return result;
+  const SeenSpace space_before(before.sightlines_W, {.voxel_m = config.voxel_m}),
+      space_now(now.sightlines_W, {.voxel_m = config.voxel_m});
   std::map<VoxelKey, Changed> changed;
   add_known(past, present, drift, config, changed);
-  add_new(past, present, known_before, drift, config, changed);
-  result.changes = clusters(std::move(changed), before_W, config);
+  add_new(past, present, space_before, drift, config, changed);
+  add_gone(past, present, space_now, changed);
+  result.changes = clusters(std::move(changed), space_before, space_now, config);
   return result;
 }
 

@@ -1,11 +1,10 @@
 // What differs between two visits' thermographic maps, hours or days apart.
 #pragma once
 
-#include <span>
 #include <string_view>
 #include <vector>
 
-#include "pllit/map/sightlines.hpp"
+#include "pllit/map/seen_space.hpp"
 #include "pllit/map/visit_drift.hpp"
 #include "pllit/state/table.hpp"
 
@@ -14,11 +13,10 @@ namespace pllit {
 enum class VisitChangeKind {
   hotter,
   cooler,
-  new_hot  ///< a surface where the first visit saw through, hotter than what stands around it
+  new_hot,  ///< a surface where the first visit looked through, hotter than what stands around it
+  gone      ///< a surface of the first visit, looked through now
 };
-constexpr std::string_view name_of(VisitChangeKind kind) {
-  return kind == VisitChangeKind::hotter ? "hotter" : kind == VisitChangeKind::cooler ? "cooler" : "new_hot";
-}
+std::string_view name_of(VisitChangeKind kind);
 
 struct VisitChangesConfig {
   double voxel_m = 0.1;      ///< maps of two visits lie on each other to a few centimetres
@@ -28,9 +26,8 @@ struct VisitChangesConfig {
   int min_voxels = 4;        ///< smaller clusters are noise
   /// Means of a voxel's points on the two visits that lie farther apart are of different surfaces.
   double same_place_m = 0.05;
-  double seen_through =
-      0.6;                ///< share of a new cluster's voxels that sightlines of the first visit must have passed ...
-  double behind_m = 0.2;  ///< ... and ended at least so far behind
+  double looked_through = 0.6;  ///< share of the voxels of what is new, or gone, that the other visit looked through
+  int gone_voxels = 8;          ///< what is smaller and gone is not worth a word
   double saturated_doubt = 60.0;  ///< what a wholly saturated voxel's sigma contains; see VoxelModelConfig
   double surround_m = 0.8;        ///< how far around a new surface its surroundings are looked at
   /// Share of the smaller visit's surfaces that the other must have seen: rooms of one building style fit onto each
@@ -39,7 +36,7 @@ struct VisitChangesConfig {
   VisitDriftConfig drift{};
 };
 
-/// A cluster of changed voxels; changes in the unit of the first map, signed.
+/// A cluster of changed voxels; changes in the unit of the first map, signed, and zero of what is gone.
 struct VisitChange {
   VisitChangeKind kind = VisitChangeKind::hotter;
   Vector3d position_W = Vector3d::Zero();
@@ -57,10 +54,14 @@ struct VisitChanges {
   std::vector<VisitChange> changes{};             ///< greatest first
 };
 
-/// Compares two maps as ThermalMap::table gives them, the second moved into the first's world. `before_W` is what the
-/// first visit's LiDAR measured, from where: a surface counts as new only where that knows none and was seen through.
-/// What nobody had looked at before may have been hot for ever.
-VisitChanges changes_between(const PointTable& before, const PointTable& now, std::span<const Sightline> before_W,
-                             const VisitChangesConfig& config = {});
+/// A visit's map as ThermalMap::table gives it, and the sightlines of its LiDAR, in one world for both visits.
+struct VisitHeat {
+  PointTable heat{};
+  std::vector<Sightline> sightlines_W{};
+};
+
+/// Compares two visits. A surface counts as new only where the first one's LiDAR measured none and looked through: what
+/// nobody had looked at before may have been hot for ever.
+VisitChanges changes_between(const VisitHeat& before, const VisitHeat& now, const VisitChangesConfig& config = {});
 
 }  // namespace pllit
