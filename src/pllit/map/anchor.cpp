@@ -168,7 +168,6 @@ AnchorCurve refined(std::span<const AnchorPair> pairs, AnchorCurve curve, const 
 }
 
 /// Notes between which intensities surfaces that are known without doubt hold the curve, but for a few at each end.
-/// Many doubtful ones do not make up for that: they were all learned by the same extrapolation.
 void note_support(std::span<const AnchorPair> pairs, const std::vector<double>& residuals, const AnchorConfig& config,
                   AnchorCurve& curve) {
   constexpr double kEnds = 0.01;
