@@ -21,19 +21,31 @@ struct TrendsOptions {
   bool json = false;
 };
 
-/// Of a region's mean and of its 95th percentile, over the visits whose region was the last one's.
+/// Over the visits whose region was the last one's: of its change voxel by voxel, which does not mind that a visit saw
+/// less of it, and of its 95th percentile.
 struct Trends {
-  std::optional<RegionTrend> mean, p95;
+  std::optional<RegionTrend> change, p95;
 };
 
 Trends trends_of(const RegionSeries& series) {
-  std::vector<TimedValue> means, p95s;
+  std::vector<TimedValue> changes, p95s;
   for (const auto& [visit, definition, reading] : series.points) {
-    if (!reading.brought || definition != series.points.back().definition) continue;
-    means.push_back({visit.start, reading.brought->mean});
-    p95s.push_back({visit.start, reading.brought->p95});
+    if (definition != series.points.back().definition) continue;
+    if (reading.change) changes.push_back({visit.start, reading.change->mean});
+    if (reading.brought) p95s.push_back({visit.start, reading.brought->p95});
   }
-  return {trend_of(means), trend_of(p95s)};
+  return {trend_of(changes), trend_of(p95s)};
+}
+
+Json trend_json(const std::optional<RegionTrend>& trend) {
+  if (!trend) return {};
+  return {{"per_day", trend->per_day}, {"visits", trend->visits}, {"days", trend->days}};
+}
+
+std::string trend_text(std::string_view name, const std::optional<RegionTrend>& trend, IntensityUnit unit) {
+  if (!trend) return std::format("  no trend of its {} yet: it takes three visits over an hour\n", name);
+  return std::format("  trend of its {}: {:+.2f} {} a day, over {} visits in {:.1f} days\n", name, trend->per_day,
+                     name_of(unit), trend->visits, trend->days);
 }
 
 /// The wanted region only, or all where no tag is given.
@@ -60,11 +72,7 @@ Json series_json(const RegionSeries& series) {
     json["visits"].push_back(std::move(point));
   }
   const Trends trends = trends_of(series);
-  json["trend"] = trends.mean && trends.p95 ? Json{{"mean_per_day", trends.mean->per_day},
-                                                   {"p95_per_day", trends.p95->per_day},
-                                                   {"visits", trends.mean->visits},
-                                                   {"days", trends.mean->days}}
-                                            : Json();
+  json["trend"] = {{"change", trend_json(trends.change)}, {"p95", trend_json(trends.p95)}};
   return json;
 }
 
@@ -75,10 +83,7 @@ std::string series_text(const RegionSeries& series, IntensityUnit unit) {
     text += std::format("  {}  {}{}\n", utc_text(visit.start), reading_text(reading, unit),
                         definition == definition_now ? "" : "; of another box: " + definition);
   const Trends trends = trends_of(series);
-  if (!trends.mean || !trends.p95) return text + "  no trend yet: it takes three visits that saw it, over an hour\n";
-  return text + std::format("  trend: {:+.2f} {} a day on average, {:+.2f} at 95 %, over {} visits in {:.1f} days\n",
-                            trends.mean->per_day, name_of(unit), trends.p95->per_day, trends.mean->visits,
-                            trends.mean->days);
+  return text + trend_text("change", trends.change, unit) + trend_text("95th percentile", trends.p95, unit);
 }
 
 Expected<std::string> trends(const TrendsOptions& options) {

@@ -140,11 +140,12 @@ TEST_F(CompareVerb, FillsAStoreThatTrendsShows) {
   const Json& pump = json["regions"][0];
   ASSERT_EQ(pump["visits"].size(), 4u) << "a visit that is compared again is replaced";
   EXPECT_EQ(pump["visits"][1]["time_utc"], "2023-11-15T22:13:20Z");
-  EXPECT_NEAR(pump["trend"]["p95_per_day"].get<double>(), 6.0, 1.0);
-  EXPECT_TRUE(json["regions"][1]["trend"].is_null());
+  EXPECT_NEAR(pump["trend"]["p95"]["per_day"].get<double>(), 6.0, 1.0);
+  EXPECT_GT(pump["trend"]["change"]["per_day"].get<double>(), 4.0);
+  EXPECT_TRUE(json["regions"][1]["trend"]["change"].is_null());
   const auto text = run({"trends", store, "--tag", "pump"});
-  EXPECT_THAT(text.out,
-              AllOf(HasSubstr("  2023-11-17T22:13:20Z  seen"), HasSubstr("  trend: +"), Not(HasSubstr("yard"))));
+  EXPECT_THAT(text.out, AllOf(HasSubstr("  2023-11-17T22:13:20Z  seen"), HasSubstr("  trend of its change: +"),
+                              Not(HasSubstr("yard"))));
   const auto mistyped = run({"trends", store, "--tag", "pmup"});
   EXPECT_EQ(mistyped.exit_code, 2);
   EXPECT_THAT(mistyped.err, HasSubstr("holds no region 'pmup'; did you mean 'pump'?"));

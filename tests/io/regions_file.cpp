@@ -54,6 +54,15 @@ TEST(RegionsFile, GivesWhatItSays) {
   EXPECT_FALSE((*regions)[1].emissivity || (*regions)[1].limits.change || (*regions)[1].limits.kelvin);
 }
 
+TEST(RegionsFile, IsAsTheDocumentationShowsIt) {
+  const auto project = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
+  const std::string text = read_file(project / "docs/ANOMALIES.md").value();
+  const auto begin = text.find("```yaml\n") + 8;
+  const auto regions = parse_regions(text.substr(begin, text.find("```", begin) - begin), "docs/ANOMALIES.md");
+  ASSERT_TRUE(regions) << regions.error().message;
+  EXPECT_EQ(regions->size(), 2u);
+}
+
 TEST(RegionsFile, NamesAnUnknownKeyItsLineAndTheNearestKnownOne) {
   EXPECT_EQ(error_of("regions:\n  - tag: a\n    " + kBox + "\n    emisivity: 0.9\n"),
             "hall.yaml:4: unknown key 'emisivity' of a region; did you mean 'emissivity'?");

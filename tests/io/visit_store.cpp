@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <format>
 
 #include "pllit/io/file.hpp"
@@ -187,6 +189,25 @@ TEST_F(VisitStoreFile, HoldsWhatItHeldWhereTheDiskFillsUp) {
   EXPECT_EQ(series()[0].points.size(), 1u);
   EXPECT_TRUE(store.record(visit_on(2), {named("pump", 101.0)})) << "and goes on once there is room";
   EXPECT_EQ(series()[0].points.size(), 2u);
+}
+
+TEST_F(VisitStoreFile, ForgetsWhatAKillLeftHalfDone) {
+  ASSERT_TRUE(begun().value().record(visit_on(1), {named("pump", 100.0)}));
+  const pid_t child = fork();
+  if (child == 0) {
+    sqlite3* handle = nullptr;
+    sqlite3_open(path_.c_str(), &handle);
+    sqlite3_exec(handle,
+                 "PRAGMA cache_size = 1; BEGIN; UPDATE reading SET mean = -1.0; CREATE TABLE much (x); "
+                 "INSERT INTO much SELECT zeroblob(500000); INSERT INTO much SELECT zeroblob(500000);",
+                 nullptr, nullptr, nullptr);
+    std::raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+  EXPECT_TRUE(fs::exists(path_.string() + "-journal"));
+  EXPECT_EQ(series()[0].points[0].reading.brought->mean, 100.0);
 }
 
 }  // namespace

@@ -78,7 +78,9 @@ std::optional<bool> SqliteStatement::truth(int column) const {
 
 Expected<SqliteDatabase> SqliteDatabase::open(const std::filesystem::path& path, Access access) {
   if (auto checked = check_file(path, access); !checked) return std::unexpected(checked.error());
-  const int flags = access == Access::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  // Also to be read it is opened for writing where that is allowed: what a kill left half done must be taken back
+  // first.
+  const int flags = SQLITE_OPEN_READWRITE | (access == Access::write ? SQLITE_OPEN_CREATE : 0);
   sqlite3* handle = nullptr;
   const int code = sqlite3_open_v2(path.c_str(), &handle, flags | SQLITE_OPEN_EXRESCODE, nullptr);
   SqliteDatabase database(path, handle);
