@@ -52,8 +52,9 @@ int run(int argc, char** argv) {
   bool quiet = false;
   const CLI::Option* verbose = program.add_flag("-v,--verbose", "Log more");
   program.add_flag("-q,--quiet", quiet, "Log errors only");
-  const std::vector<Verb> verbs = {add_run(program),    add_simulate(program), add_doctor(program), add_eval(program),
-                                   add_export(program), add_compare(program),  add_config(program)};
+  const std::vector<Verb> verbs = {add_run(program),    add_simulate(program), add_doctor(program),
+                                   add_eval(program),   add_export(program),   add_compare(program),
+                                   add_trends(program), add_config(program)};
   for (const Verb& verb : verbs) verb.command->fallthrough();  // -v and -q hold after the verb as well
   try {
     program.parse(argc, argv);

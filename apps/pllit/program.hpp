@@ -35,6 +35,7 @@ Verb add_eval(CLI::App& program);
 Verb add_export(CLI::App& program);
 Verb add_run(CLI::App& program);
 Verb add_simulate(CLI::App& program);
+Verb add_trends(CLI::App& program);
 
 /// Logs the error to stderr and gives the exit code of its kind.
 ExitCode report(const Error& error);

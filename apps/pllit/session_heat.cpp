@@ -7,7 +7,9 @@
 #include <cstdio>
 
 #include "pllit/io/anomalies_file.hpp"
+#include "pllit/io/file.hpp"
 #include "pllit/report/report.hpp"
+#include "pllit/report/severity_file.hpp"
 #include "pllit/slam/frame_table.hpp"
 
 namespace pllit::app {
@@ -93,17 +95,32 @@ Expected<SessionHeat> write_heat(SessionWriter& session, const Thermography& the
   return heat;
 }
 
-Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run, const SessionHeat* heat) {
+Expected<SeverityTable> severity_table(const Config& config) {
+  const std::string& file = config.report.severity;
+  if (file.empty()) return neta_100_18();
+  const auto text = read_file(file);
+  if (!text) return in_context("advanced.report.severity", text.error());
+  auto table = parse_severity(*text, file);
+  if (table && config.thermography.unit != IntensityUnit::kelvin)
+    spdlog::warn("{} classes temperatures; these images are in {}, so nothing will be classed", file,
+                 name_of(config.thermography.unit));
+  return table;
+}
+
+Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run, const SessionHeat* heat,
+                            const SeverityTable& severity) {
   auto whole = open_session(session.folder());
   if (!whole) return std::unexpected(whole.error());
   ReportContent content{.title = "Inspection " + whole->folder.filename().string(),
                         .trajectory = std::move(whole->trajectory),
                         .map = std::move(whole->map),
-                        .doubts = doubts_of(whole->health)};
+                        .doubts = doubts_of(whole->health),
+                        .severity = severity};
   if (heat) {
     const ThermographyConfig& config = heat->stage.config();
     content.has_images = heat->stage.map().size() > 0;
     content.unit = config.unit;
+    content.radiometry = config.radiometry;
     content.voxel_m = config.map.voxel_m;
     content.known_after = config.map.model.learned_after;
     content.thermal_map = heat->map;

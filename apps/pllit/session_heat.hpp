@@ -4,6 +4,8 @@
 #include <map>
 
 #include "pllit/io/session.hpp"
+#include "pllit/report/severity.hpp"
+#include "pllit/slam/config.hpp"
 #include "pllit/slam/loop_stage.hpp"
 #include "pllit/slam/thermography.hpp"
 
@@ -33,7 +35,12 @@ struct SessionHeat {
 /// Writes anomalies.json, thermal_map.ply and anomalies.ply, and gives what they hold.
 Expected<SessionHeat> write_heat(SessionWriter& session, const Thermography& thermography, const LoopResult& loops);
 
+/// The table of severity that the configuration names, or the built-in one. To be read before a run starts: a mistake
+/// in it must not be found after hours.
+Expected<SeverityTable> severity_table(const Config& config);
+
 /// Writes report.html from what the session holds and `run`, its run.json; `heat` is null where there was no camera.
-Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run, const SessionHeat* heat);
+Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run, const SessionHeat* heat,
+                            const SeverityTable& severity);
 
 }  // namespace pllit::app

@@ -5,6 +5,7 @@
 #include <format>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "pllit/geometry/lie_json.hpp"
 #include "pllit/io/ply.hpp"
@@ -13,6 +14,7 @@
 #include "pllit/slam/config_yaml.hpp"
 #include "pllit/slam/relocalisation.hpp"
 #include "program.hpp"
+#include "region_comparison.hpp"
 
 namespace pllit::app {
 namespace {
@@ -23,7 +25,8 @@ using Json = nlohmann::ordered_json;
 struct CompareOptions {
   std::string baseline;
   std::vector<std::string> sessions;
-  bool json = false;
+  std::string regions, store;
+  bool json = false, alarm_exit = false;
 };
 
 struct Visit {
@@ -81,8 +84,9 @@ Json change_json(const VisitChange& change) {
           {"change_sigmas", {{"mean", change.mean_sigmas}}}};
 }
 
-/// One visit against the baseline.
-Expected<Json> compared(const Visit& baseline, const std::string& baseline_folder, const std::string& folder) {
+/// One visit against the baseline; with named regions also what it shows of them.
+Expected<Json> compared(const Visit& baseline, const std::string& baseline_folder, const std::string& folder,
+                        std::optional<RegionComparison>& regions) {
   auto visit = read_visit(folder);
   if (!visit) return std::unexpected(visit.error());
   const auto located = relocalise(baseline.map, visit->map);
@@ -103,13 +107,17 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
               {"rmse_m", located->rmse_m}}},
             {"voxels", {{"shared", found.shared}, {"not_seen_again", found.only_before}, {"only_now", found.only_now}}},
             {"drift",
-             {{"holds", found.drift_covered > 0.0},
-              {"covered", found.drift_covered},
-              {"gain", found.drift.curve.gain},
-              {"bias", found.drift.curve.bias},
-              {"rms", found.drift.rms}}},
+             {{"holds", found.drift.covered() > 0.0},
+              {"covered", found.drift.covered()},
+              {"gain", found.drift.whole().curve.gain},
+              {"bias", found.drift.whole().curve.bias},
+              {"rms", found.drift.whole().rms}}},
             {"changes", Json::array()}};
   for (const VisitChange& change : found.changes) json["changes"].push_back(change_json(change));
+  if (!regions) return json;
+  auto looked = regions->look(folder, visit->seen.heat, found.drift);
+  if (!looked) return std::unexpected(looked.error());
+  json["regions"] = std::move(*looked);
   return json;
 }
 
@@ -142,19 +150,32 @@ std::string visit_text(const Json& visit) {
   return text + (visit["changes"].empty() ? "  nothing has changed\n" : "");
 }
 
-ExitCode run(const CompareOptions& options) {
+Expected<ExitCode> compare(const CompareOptions& options) {
   const auto baseline = read_visit(options.baseline);
-  if (!baseline) return report(baseline.error());
-  Json json{{"schema_version", kSchemaVersion}, {"baseline", options.baseline}, {"sessions", Json::array()}};
+  if (!baseline) return std::unexpected(baseline.error());
+  std::optional<RegionComparison> regions;
+  if (!options.regions.empty()) {
+    auto opened = RegionComparison::open(options.regions, options.store, options.baseline, baseline->seen.heat);
+    if (!opened) return std::unexpected(opened.error());
+    regions.emplace(std::move(*opened));
+  }
+  Json json{{"schema_version", kSchemaVersion}, {"baseline", options.baseline}};
+  if (regions) json["regions"] = regions->baseline_json();
+  json["sessions"] = Json::array();
   std::string text;
   for (const std::string& folder : options.sessions) {
-    const auto visit = compared(*baseline, options.baseline, folder);
-    if (!visit) return report(visit.error());
-    text += visit_text(*visit);
+    const auto visit = compared(*baseline, options.baseline, folder, regions);
+    if (!visit) return std::unexpected(visit.error());
+    text += visit_text(*visit) + (regions ? regions->text() : "");
     json["sessions"].push_back(*visit);
   }
   std::fputs((options.json ? json.dump(2) + "\n" : text).c_str(), stdout);
-  return ExitCode::done;
+  return options.alarm_exit && regions && regions->exceeded() ? ExitCode::alarm : ExitCode::done;
+}
+
+ExitCode run(const CompareOptions& options) {
+  const auto code = compare(options);
+  return code ? *code : report(code.error());
 }
 
 }  // namespace
@@ -165,11 +186,19 @@ Verb add_compare(CLI::App& program) {
   const auto options = std::make_shared<CompareOptions>();
   verb->add_option("baseline", options->baseline, "Session of the earlier visit")->type_name("BASELINE")->required();
   verb->add_option("session", options->sessions, "Sessions of later visits")->type_name("SESSION...")->required();
+  CLI::Option* regions =
+      verb->add_option("--regions", options->regions, "Named regions of the baseline's map to look up on each visit")
+          ->type_name("FILE.yaml");
+  verb->add_option("--store", options->store, "Keep what is seen of them, for pllit trends")
+      ->type_name("FILE.sqlite")
+      ->needs(regions);
   verb->add_flag("--json", options->json, "Print the comparison as JSON");
+  verb->add_flag("--alarm-exit", options->alarm_exit, "Exit with 4 where a region exceeds a limit")->needs(regions);
   verb->footer(
       "Examples:\n"
       "  pllit compare results/monday results/friday\n"
-      "  pllit compare results/monday results/tuesday results/friday --json");
+      "  pllit compare results/monday results/tuesday results/friday --json\n"
+      "  pllit compare results/monday results/friday --regions hall.yaml --store hall.sqlite");
   return {verb, [options] { return run(*options); }};
 }
 

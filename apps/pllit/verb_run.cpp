@@ -86,10 +86,11 @@ Expected<Trajectory> truth_of(const RunOptions& options, const OpenedSource& sou
 
 class SessionRun {
  public:
-  SessionRun(const RunOptions& options, const Config& config, OpenedSource source, Trajectory truth,
-             SessionWriter session, std::stop_token stop)
+  SessionRun(const RunOptions& options, const Config& config, SeverityTable severity, OpenedSource source,
+             Trajectory truth, SessionWriter session, std::stop_token stop)
       : options_(options),
         config_(config),
+        severity_(std::move(severity)),
         source_(std::move(source)),
         truth_(std::move(truth)),
         session_(std::move(session)),
@@ -154,7 +155,7 @@ class SessionRun {
     if (scored && heat && heat_ && source_.scene_json && summary.frames > 1) scored = add_findings(json);
     if (!scored) json["notes"].push_back(scored.error().message);
     const auto written = session_.write_run(json);
-    const auto reported = heat ? write_report(session_, json, heat_ ? &*heat_ : nullptr) : heat;
+    const auto reported = heat ? write_report(session_, json, heat_ ? &*heat_ : nullptr, severity_) : heat;
     print(json);
     // What stopped the run comes first: a full disk hits these files too.
     for (const auto* done : {&result, &written, &scene, &heat, &reported})
@@ -192,6 +193,7 @@ class SessionRun {
 
   const RunOptions& options_;
   const Config& config_;
+  SeverityTable severity_;
   OpenedSource source_;
   Trajectory truth_;
   SessionWriter session_;
@@ -207,6 +209,8 @@ class SessionRun {
 Expected<ExitCode> run_session(const RunOptions& options) {
   const auto config = read_config(options.config, options.settings);
   if (!config) return std::unexpected(config.error());
+  auto severity = severity_table(*config);
+  if (!severity) return std::unexpected(severity.error());
   const Interrupt interrupt;  // before a source starts threads
   auto source = open_source(options.sources, *config, config->vision.enabled ? Images::wanted : Images::skipped);
   if (!source) return std::unexpected(source.error());
@@ -220,7 +224,8 @@ Expected<ExitCode> run_session(const RunOptions& options) {
   if (!session) return std::unexpected(session.error());
   if (options.out.empty())
     if (const auto linked = link_latest(folder); !linked) spdlog::warn("{}", linked.error().message);
-  return SessionRun(options, *config, std::move(*source), std::move(*truth), std::move(*session), interrupt.token())();
+  return SessionRun(options, *config, std::move(*severity), std::move(*source), std::move(*truth), std::move(*session),
+                    interrupt.token())();
 }
 
 ExitCode run(const RunOptions& options) {

@@ -19,7 +19,7 @@ TEST_F(Program, PrintsHelpWithExamplesOnStdout) {
 }
 
 TEST_F(Program, ExplainsEveryVerbWithAnExample) {
-  for (const char* verb : {"config", "eval", "export"}) {
+  for (const char* verb : {"compare", "config", "eval", "export", "trends"}) {
     const auto [exit_code, out, err] = run({verb, "--help"});
     EXPECT_EQ(exit_code, 0) << verb;
     EXPECT_THAT(out, HasSubstr(std::string("  pllit ") + verb));

@@ -97,6 +97,7 @@ TEST_F(RunVerb, SaysInWordsWhyARunThatEndsWellIsNotToBeTrusted) {
 TEST_F(RunVerb, RefusesWrongInputWithExitCodeTwoAndLeavesNothingBehind) {
   const std::string empty = write("empty.bag", "");
   const std::string text = write("text.bag", "no recording");
+  const std::string table = write("table.yaml", "scheme: mine\nclasses:\n  - {from_k: 1, name: a, action: b}\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{path("absent.bag")}, "absent.bag' does not exist"},
       {{empty}, "is empty"},
@@ -107,6 +108,8 @@ TEST_F(RunVerb, RefusesWrongInputWithExitCodeTwoAndLeavesNothingBehind) {
       {{"sim:box_room", "--config", "kiti"}, "did you mean 'kitti'?"},
       {{"sim:box_room", "--set", "map.voxl_m=1"}, "did you mean 'map.voxel_m'?"},
       {{"sim:box_room", "--set", "map.voxel_m=-1"}, "out of range"},
+      {{"sim:box_room", "--set", "advanced.report.severity=" + table}, "table.yaml:3: unknown key 'from_k'"},
+      {{"sim:box_room", "--set", "advanced.report.severity=" + path("none.yaml")}, "none.yaml: no such file"},
       {{"sim:box_room", "--truth", path("absent.tum")}, "absent.tum"},
       {{"sim:box_room", "--truth", text}, "text.bag"}};
   for (const auto& [sources, message] : cases) {

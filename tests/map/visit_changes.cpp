@@ -83,7 +83,7 @@ VisitChanges between(const Difference& difference) {
 
 TEST(VisitChanges, AreNoneWhereOnlyTheWeatherChanged) {
   const VisitChanges found = between({.gain = 1.3, .bias = -25.0});
-  EXPECT_NEAR(found.drift_covered, 1.0, 1e-9);
+  EXPECT_NEAR(found.drift.covered(), 1.0, 1e-9);
   EXPECT_GT(found.shared, 300);
   EXPECT_EQ(found.only_before + found.only_now, 0);
   EXPECT_TRUE(found.same_site);
@@ -163,11 +163,11 @@ TEST(VisitChanges, SayNothingWhereTheVisitsShareTooLittle) {
   PointTable before = wall(random), elsewhere = wall(random);
   for (Vector3f& p : elsewhere.points) p.x() += 50.0F;
   const VisitChanges found = between(before, elsewhere);
-  EXPECT_EQ(found.drift_covered, 0.0);
+  EXPECT_EQ(found.drift.covered(), 0.0);
   EXPECT_EQ(found.shared, 0);
   EXPECT_FALSE(found.same_site);
   EXPECT_TRUE(found.changes.empty());
-  EXPECT_EQ(changes_between({}, {}).drift_covered, 0.0);
+  EXPECT_EQ(changes_between({}, {}).drift.covered(), 0.0);
 }
 
 }  // namespace

@@ -3,15 +3,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
 #include "pllit/report/pictures.hpp"
+#include "pllit/report/severity_file.hpp"
 #include "report/sample_visit.hpp"
 
 namespace pllit {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using Json = nlohmann::ordered_json;
@@ -97,6 +102,70 @@ TEST(Severity, ReachesFromItsBoundUpToTheNext) {
   EXPECT_EQ(name(4.0), "probable");
   EXPECT_EQ(name(14.99), "probable");
   EXPECT_EQ(name(15.0), "major");
+}
+
+std::string severity_error(const std::string& yaml) {
+  const auto table = parse_severity(yaml, "mine.yaml");
+  if (table) {
+    ADD_FAILURE() << "read without error:\n" << yaml;
+    return "";
+  }
+  EXPECT_EQ(table.error().kind, Error::Kind::input);
+  return table.error().message;
+}
+
+TEST(SeverityFile, ThatComesWithTheProgramIsTheBuiltInTable) {
+  const auto project = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
+  std::ifstream file(project / "config/severity/neta_100_18.yaml");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto table = parse_severity(text, "neta_100_18.yaml");
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_EQ(*table, neta_100_18());
+}
+
+TEST(SeverityFile, GivesTheClassesOfTheReport) {
+  ReportContent content = visit();
+  content.unit = IntensityUnit::kelvin;
+  content.anomalies = {finding(3, 40.0)};
+  content.severity = parse_severity(
+                         "scheme: works rule 7\nclasses:\n  - {from_K: 10, name: B, action: watch}\n"
+                         "  - {from_K: 40, name: A, action: stop <at once>}\n",
+                         "mine.yaml")
+                         .value();
+  EXPECT_THAT(report_html(content, run_json()), HasSubstr("A: stop &lt;at once&gt; (works rule 7)"));
+  content.anomalies = {finding(3, 39.9)};
+  EXPECT_THAT(report_html(content, run_json()), HasSubstr("B: watch (works rule 7)"));
+}
+
+TEST(SeverityFile, NamesEveryMistakeItsLineAndWhatToDo) {
+  const std::string top = "scheme: mine\nclasses:\n";
+  EXPECT_EQ(
+      severity_error(top + "  - {from_K: 4, name: a, action: b}\n  - {from_K: 4, name: c, action: d}\n"),
+      "mine.yaml:4: from_K: 4 does not exceed the 4 of the class before; list them from the mildest to the worst");
+  EXPECT_THAT(severity_error(top + "  - {from_k: 4, name: a, action: b}\n"),
+              AllOf(HasSubstr("mine.yaml:3: unknown key 'from_k' of a class; did you mean 'from_K'?"),
+                    HasSubstr("from_K is missing")));
+  EXPECT_THAT(severity_error(top + "  - {from_K: warm, name: a, action: b}\n"), HasSubstr("must be a number"));
+  EXPECT_THAT(severity_error(top + "  - {from_K: -1, name: a, action: b}\n"), HasSubstr("give 0 to 2000"));
+  EXPECT_THAT(severity_error(top + "  - {from_K: 1, name: a}\n"), HasSubstr("action is missing"));
+  EXPECT_THAT(severity_error(top + "  - {from_K: 1, name: a, action: b}\n  - {from_K: 2, name: a, action: b}\n"),
+              HasSubstr("name: 'a' is that of another class too"));
+  EXPECT_THAT(severity_error("scheme: mine\nclasses: []\n"), HasSubstr("must be a list with at least one"));
+  EXPECT_THAT(severity_error("classes:\n  - {from_K: 1, name: a, action: b}\n"), HasSubstr("scheme is missing"));
+  EXPECT_THAT(severity_error("- 1\n"), HasSubstr("the file must hold keys (scheme, classes)"));
+  EXPECT_THAT(severity_error(""), HasSubstr("mine.yaml:1"));
+}
+
+TEST(Report, SaysWhatTemperaturesWereCorrectedFor) {
+  ReportContent content = visit();
+  content.unit = IntensityUnit::kelvin;
+  content.anomalies = {finding(3, 40.0)};
+  EXPECT_THAT(report_html(content, run_json()), HasSubstr("apparent temperature; emissivity and reflections not"));
+  content.radiometry = {.emissivity = 0.85, .reflected_K = 291.0, .air_K = 288.0, .absorbed_per_m = 0.004};
+  EXPECT_THAT(report_html(content, run_json()),
+              AllOf(HasSubstr("corrected for an emissivity of 0.85 and surroundings of 291.0 K, and for air of 288.0 K "
+                              "that absorbs 0.4 % a metre"),
+                    Not(HasSubstr("apparent temperature"))));
 }
 
 TEST(Plan, ShowsHotterSurfacesBrighter) {

@@ -314,5 +314,29 @@ TEST(Thermography, TakesFrozenVideoForAClosedShutter) {
   EXPECT_EQ(watched.image().use, Use::mapped);
 }
 
+TEST(Thermography, KeepsTemperaturesOfSurfacesWhereTheirEmissivityIsKnown) {
+  ThermographyConfig settings = config();
+  settings.unit = IntensityUnit::kelvin;
+  settings.radiometry = {.emissivity = 0.6, .reflected_K = 290.0, .air_K = 285.0, .absorbed_per_m = 0.01};
+  Thermography stage(camera(), settings);
+  ThermographyInput input{.time = {}, .T_W_C = pose_at(0.0)};
+  for (int i = 0; i < 60; ++i)
+    for (int k = 0; k < 40; ++k)
+      input.points_W.emplace_back(4.0F, -1.5F + 0.05F * static_cast<float>(i), 0.5F + 0.05F * static_cast<float>(k));
+  for (int image = 0; image < 20; ++image) {
+    input.time = Time(from_seconds(1e6 + 0.1 * image));
+    input.raw = cv::Mat(camera().height, camera().width, CV_16UC1, cv::Scalar(31'000 + image % 2));  // no frozen video
+    stage.process(input);
+  }
+  const PointTable table = stage.map().table();
+  ASSERT_GT(table.points.size(), 100u);
+  const RadiometricEquation equation(settings.radiometry);
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    const double range_m = (table.points[i].cast<double>() - input.T_W_C.translation()).norm();
+    EXPECT_NEAR((*find_field(table, "normal"))[i], equation.object_K(310.0, range_m), 0.1);
+    EXPECT_NEAR((*find_field(table, "raw"))[i], 31'000.0, 1.0) << "what the camera gave stays";
+  }
+}
+
 }  // namespace
 }  // namespace pllit

@@ -71,6 +71,18 @@ Anomaly anomaly_of(const Json& json) {
   return anomaly;
 }
 
+/// A file that says to hold anomalies in the present schema.
+Expected<Json> anomalies_in(const std::filesystem::path& path) {
+  const auto text = read_file(path);
+  if (!text) return std::unexpected(text.error());
+  const auto wrong = [&](const std::string& what) { return input_error(std::format("{}: {}", path.string(), what)); };
+  Json json = Json::parse(*text, nullptr, false);
+  if (json.is_discarded()) return wrong("is not JSON");
+  if (!json.is_object() || !json.contains("schema_version") || json["schema_version"] != kAnomaliesSchema)
+    return wrong(std::format("is no list of anomalies of schema {}", kAnomaliesSchema));
+  return json;
+}
+
 }  // namespace
 
 Json anomaly_json(const Anomaly& anomaly) {
@@ -101,20 +113,25 @@ Json anomalies_json(std::span<const Anomaly> anomalies, IntensityUnit unit) {
 }
 
 Expected<std::vector<Anomaly>> read_anomalies(const std::filesystem::path& path) {
-  const auto text = read_file(path);
-  if (!text) return std::unexpected(text.error());
-  const auto wrong = [&](const std::string& what) { return input_error(std::format("{}: {}", path.string(), what)); };
-  const Json json = Json::parse(*text, nullptr, false);
-  if (json.is_discarded()) return wrong("is not JSON");
-  if (!json.is_object() || !json.contains("schema_version") || json["schema_version"] != kAnomaliesSchema)
-    return wrong(std::format("is no list of anomalies of schema {}", kAnomaliesSchema));
+  const auto json = anomalies_in(path);
+  if (!json) return std::unexpected(json.error());
   std::vector<Anomaly> anomalies;
   try {
-    for (const Json& anomaly : json.at("anomalies")) anomalies.push_back(anomaly_of(anomaly));
+    for (const Json& anomaly : json->at("anomalies")) anomalies.push_back(anomaly_of(anomaly));
   } catch (const std::exception& error) {
-    return wrong(std::format("finding {}: {}", anomalies.size() + 1, error.what()));
+    return input_error(std::format("{}: finding {}: {}", path.string(), anomalies.size() + 1, error.what()));
   }
   return anomalies;
+}
+
+Expected<IntensityUnit> read_unit(const std::filesystem::path& path) {
+  const auto json = anomalies_in(path);
+  if (!json) return std::unexpected(json.error());
+  try {
+    return named(json->at("unit"), std::array{IntensityUnit::grey, IntensityUnit::count, IntensityUnit::kelvin});
+  } catch (const std::exception& error) {
+    return input_error(std::format("{}: unit: {}", path.string(), error.what()));
+  }
 }
 
 }  // namespace pllit

@@ -20,4 +20,7 @@ nlohmann::ordered_json anomalies_json(std::span<const Anomaly> anomalies, Intens
 /// Reads what anomalies_json made. Input errors name the file and the finding that is wrong.
 Expected<std::vector<Anomaly>> read_anomalies(const std::filesystem::path& path);
 
+/// What the intensities of that session count.
+Expected<IntensityUnit> read_unit(const std::filesystem::path& path);
+
 }  // namespace pllit

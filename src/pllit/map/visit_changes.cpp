@@ -172,8 +172,7 @@ std::string_view name_of(VisitChangeKind kind) {
 
 VisitChanges changes_between(const VisitHeat& before, const VisitHeat& now, const VisitChangesConfig& config) {
   const Voxels past = voxels_of(before.heat, "normal", config), present = voxels_of(now.heat, "intensity", config);
-  const VisitDrift drift = drift_between(past, present, config);
-  VisitChanges result{.drift = drift.whole(), .drift_covered = drift.covered()};
+  VisitChanges result{.drift = drift_between(past, present, config)};
   for (const auto& [key, known] : present) ++(past.contains(key) ? result.shared : result.only_now);
   result.only_before = static_cast<int>(past.size()) - result.shared;
   result.seen_again =
@@ -183,8 +182,8 @@ VisitChanges changes_between(const VisitHeat& before, const VisitHeat& now, cons
   const SeenSpace space_before(before.sightlines_W, {.voxel_m = config.voxel_m}),
       space_now(now.sightlines_W, {.voxel_m = config.voxel_m});
   std::map<VoxelKey, Changed> changed;
-  add_known(past, present, drift, config, changed);
-  add_new(past, present, space_before, drift, config, changed);
+  add_known(past, present, result.drift, config, changed);
+  add_new(past, present, space_before, result.drift, config, changed);
   add_gone(past, present, space_now, changed);
   result.changes = clusters(std::move(changed), space_before, space_now, config);
   return result;

@@ -46,8 +46,7 @@ struct VisitChange {
 };
 
 struct VisitChanges {
-  AnchorFit drift{};           ///< second visit's intensities to the first's, over all surfaces that both saw
-  double drift_covered = 0.0;  ///< share of those whose drift, there or as a whole, is known; the others are not judged
+  VisitDrift drift;                               ///< where it does not hold, nothing is judged
   int shared = 0, only_before = 0, only_now = 0;  ///< voxels
   double seen_again = 0.0;                        ///< share of the smaller visit's voxels that are shared
   bool same_site = false;                         ///< enough of them

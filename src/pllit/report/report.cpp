@@ -64,13 +64,22 @@ std::string verdict(const ReportContent& content, std::size_t alarms, const Json
   return html;
 }
 
-std::string caveats(const Anomaly& a, IntensityUnit unit) {
+std::string corrected_text(const Radiometry& radiometry) {
+  if (!radiometry.corrects()) return "apparent temperature; emissivity and reflections not corrected";
+  std::string text = std::format("corrected for an emissivity of {:.2f} and surroundings of {:.1f} K",
+                                 radiometry.emissivity, radiometry.reflected_K);
+  if (radiometry.absorbed_per_m > 0.0)
+    text += std::format(", and for air of {:.1f} K that absorbs {:.1f} % a metre", radiometry.air_K,
+                        100.0 * radiometry.absorbed_per_m);
+  return text + "; surfaces of another emissivity are off";
+}
+
+std::string caveats(const Anomaly& a, IntensityUnit unit, const Radiometry& radiometry) {
   std::vector<std::string> said;
   if (unit == IntensityUnit::grey)
     said.emplace_back("from video after gain control: a change is certain in sign, not in kelvin");
   if (unit == IntensityUnit::count) said.emplace_back("raw counts without calibration: no temperature");
-  if (unit == IntensityUnit::kelvin)
-    said.emplace_back("apparent temperature; emissivity and reflections not corrected");
+  if (unit == IntensityUnit::kelvin) said.push_back(corrected_text(radiometry));
   if (a.views < 3) said.emplace_back("seen from few viewpoints: may be a reflection");
   if (a.voxels < 9) said.emplace_back("small: detected, its peak not measured");
   if (a.kind == AnomalyKind::new_hot) said.emplace_back("was not there before: judged by what stands around it");
@@ -101,7 +110,7 @@ std::string card(const Anomaly& a, const ReportContent& content) {
   html += row("last seen", utc_text(to_seconds(a.last_seen)));
   html +=
       row("evidence", std::format("{} images from {} viewpoints, confidence {:.2f}", a.frames, a.views, a.confidence));
-  html += row("caveats", escaped(caveats(a, content.unit)));
+  html += row("caveats", escaped(caveats(a, content.unit, content.radiometry)));
   html +=
       "</table></div>\n<p class=\"muted\">Decision: <span class=\"sign\"></span> Reviewed by: <span class=\"sign\">"
       "</span></p></section>\n";

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pllit/map/radiometry.hpp"
 #include "pllit/report/severity.hpp"
 #include "pllit/state/table.hpp"
 #include "pllit/state/trajectory.hpp"
@@ -23,8 +24,9 @@ struct DoubtfulStretch {
 struct ReportContent {
   std::string title;
   IntensityUnit unit = IntensityUnit::grey;
-  double voxel_m = 0.05;  ///< of the thermographic map
-  int known_after = 12;   ///< images of a surface before it is known what is normal there
+  Radiometry radiometry{};  ///< what temperatures were corrected for
+  double voxel_m = 0.05;    ///< of the thermographic map
+  int known_after = 12;     ///< images of a surface before it is known what is normal there
   bool has_images = false;
   Trajectory trajectory{};
   PointTable map{};          ///< of the LiDAR

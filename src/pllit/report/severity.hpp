@@ -1,4 +1,4 @@
-// How bad a rise in temperature is, by a table that the reader may replace.
+// How bad a rise in temperature is, by a table that the reader may replace (report/severity_file).
 #pragma once
 
 #include <optional>
@@ -13,11 +13,13 @@ namespace pllit {
 struct SeverityClass {
   double from_k = 0.0;
   std::string name, action;
+  bool operator==(const SeverityClass&) const = default;
 };
 
 struct SeverityTable {
   std::string scheme;
   std::vector<SeverityClass> classes;  ///< ascending; below the first there is nothing to report
+  bool operator==(const SeverityTable&) const = default;
 };
 
 /// Rise over a similar component under the same load, after ANSI/NETA MTS table 100.18 (numbers; wording is ours). Its

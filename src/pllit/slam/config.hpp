@@ -63,6 +63,11 @@ struct RigConfig {
   } camera;
 };
 
+/// How a session is told as a page.
+struct ReportConfig {
+  std::string severity;  ///< file with a table of severity; empty: the built-in one
+};
+
 /// The whole configuration of a run.
 struct Config {
   InputConfig input;
@@ -81,6 +86,7 @@ struct Config {
   VisionConfig vision;
   ThermographyConfig thermography;
   LoopConfig loop;
+  ReportConfig report;
 };
 
 /// Equal in every key.

@@ -138,6 +138,11 @@ void list(Section section, DegeneracyConfig& config) {
               {0.0, 1.0});
 }
 
+void list(Section section, ReportConfig& config) {
+  section.add(PLLIT_KEY(severity),
+              "File with the classes of severity, for radiometric input; empty: after NETA 100.18.");
+}
+
 void list_details(Section section, StartUpConfig& config) {
   section.add(PLLIT_KEY(window_s), "Length of IMU data that is looked at before the start.", "s", {0.1, 60.0});
   section.add(PLLIT_KEY(gravity_mps2), "Local gravity.", "m/s^2", {0.1, 30.0});
@@ -209,8 +214,11 @@ KeyList keys_of(Config& config) {
   list_vision(advanced.section("vision", "How images are matched and believed."), config.vision);
   list_anomalies(advanced.section("anomalies", "The thermographic map, and what counts as abnormally hot."),
                  config.thermography);
+  list_radiometry(advanced.section("radiometry", "Of radiometric cameras: from apparent temperatures to surfaces'."),
+                  config.thermography.radiometry);
   list(advanced.section("health", "When a frame is called degraded or lost."), config.health);
   list_loop(advanced.section("loop", "How loops are found and checked."), config.loop);
+  list(advanced.section("report", "How the report judges."), config.report);
   return keys;
 }
 

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "pllit/base/limits.hpp"
 #include "pllit/slam/config.hpp"
 
 namespace pllit {
@@ -18,12 +18,6 @@ struct Choice {
   std::span<const std::string_view> words;
   std::function<std::size_t()> get;  ///< index of the word that stands
   std::function<void(std::size_t)> set;
-};
-
-/// Inclusive bounds of a number, or of every number of a list.
-struct Limits {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
 };
 
 /// One key: its name in the file, where its value lies, and what a user must know about it.

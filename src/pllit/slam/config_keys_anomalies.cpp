@@ -52,4 +52,12 @@ void list_anomalies(Section section, ThermographyConfig& config) {
   section.add(PLLIT_KEY(shutter_pause_s), "Images so soon after the shutter opened do not count.", "s", {0.0, 60.0});
 }
 
+void list_radiometry(Section section, Radiometry& config) {
+  section.add(PLLIT_KEY(emissivity), "Of the surfaces, 8 to 14 um; 1: apparent temperatures are kept.", "",
+              {0.05, 1.0});
+  section.add(PLLIT_KEY(reflected_K), "Apparent temperature of what the surfaces reflect.", "K", {100.0, 1500.0});
+  section.add(PLLIT_KEY(air_K), "Temperature of the air between camera and surfaces.", "K", {100.0, 1500.0});
+  section.add(PLLIT_KEY(absorbed_per_m), "Share that this air absorbs on each metre; 0: none.", "1/m", {0.0, 0.1});
+}
+
 }  // namespace pllit

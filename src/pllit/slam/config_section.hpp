@@ -59,6 +59,8 @@ void list_features(Section section, VisionConfig& config);
 void list_vision(Section section, VisionConfig& config);
 /// The keys of advanced.anomalies.
 void list_anomalies(Section section, ThermographyConfig& config);
+/// The keys of advanced.radiometry.
+void list_radiometry(Section section, Radiometry& config);
 /// The keys of advanced.loop.
 void list_loop(Section section, LoopConfig& config);
 

@@ -2,9 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <format>
+
+#include "pllit/base/strict_yaml.hpp"
 
 namespace pllit {
 namespace {
@@ -19,33 +20,9 @@ struct Overloaded : Ts... {
   using Ts::operator()...;
 };
 
-std::string shape_of(const YAML::Node& node) {
-  if (node.IsSequence()) return std::format("a list of {}", node.size());
-  if (node.IsMap()) return "a group of keys";
-  return node.IsScalar() ? in_quotes(node.Scalar()) : "empty";
-}
-
-template <class T>
-std::expected<T, std::string> number(const YAML::Node& node, const Limits& limits) {
-  constexpr std::string_view kind = std::is_integral_v<T> ? "a whole number" : "a number";
-  const std::string text = node.IsScalar() ? node.Scalar() : "";
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const char* end = text.data() + text.size();
-  T value{};
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error == std::errc::result_out_of_range)
-    return Complaint(std::format("{} is too large or too small", in_quotes(text)));
-  if (error != std::errc() || stop != end) return Complaint(std::format("must be {}, but is {}", kind, shape_of(node)));
-  if (!std::isfinite(static_cast<double>(value))) return Complaint(std::format("{} is not a finite number", text));
-  const auto as_double = static_cast<double>(value);
-  if (as_double < limits.min || as_double > limits.max)
-    return Complaint(std::format("{} is out of range; give {} to {}", value, limits.min, limits.max));
-  return value;
-}
-
 template <class T>
 Read read_number(const YAML::Node& node, const Limits& limits, T& target) {
-  const auto value = number<T>(node, limits);
+  const auto value = number_of<T>(node, limits);
   if (!value) return Complaint(value.error());
   target = *value;
   return {};
@@ -182,12 +159,6 @@ std::string range_text(const Key& key) {
     return text;
   }
   return std::isfinite(key.limits.min) ? std::format("{} to {}", key.limits.min, key.limits.max) : "";
-}
-
-std::string in_quotes(std::string_view text) {
-  std::string shown = "'";
-  for (const char c : text.substr(0, 60)) shown += c >= ' ' && c < '\x7f' ? c : '?';
-  return shown + (text.size() > 60 ? "...'" : "'");
 }
 
 }  // namespace pllit

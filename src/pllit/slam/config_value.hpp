@@ -20,7 +20,4 @@ std::string value_text(const Key::Value& value);
 /// What the value may be: "0.05 to 10", "auto | static | moving"; empty where anything goes.
 std::string range_text(const Key& key);
 
-/// Foreign text for a message: one line, printable, not long.
-std::string in_quotes(std::string_view text);
-
 }  // namespace pllit

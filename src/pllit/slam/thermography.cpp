@@ -69,7 +69,9 @@ Thermography::Thermography(const Camera& camera, const ThermographyConfig& confi
       map_(config.map),
       sights_(config.sights),
       detector_(config.anomalies),
-      surface_(config.surface) {}
+      surface_(config.surface) {
+  if (config.unit == IntensityUnit::kelvin && config.radiometry.corrects()) radiometric_.emplace(config.radiometry);
+}
 
 ThermographyFrame Thermography::process(const ThermographyInput& input) {
   assert(input.raw.cols == camera_.width && input.raw.rows == camera_.height);
@@ -87,6 +89,9 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
   ThermalView view{.time = input.time, .viewpoint_W = input.T_W_C.translation()};
   view.observations =
       sample_image(points, input.T_W_C, camera_, {image_through(input.raw, unit), input.raw}, config_.sampling);
+  if (radiometric_)
+    for (SurfaceObservation& seen : view.observations)
+      seen.intensity = static_cast<float>(radiometric_->object_K(seen.intensity, seen.range_m));
   frame.observations = static_cast<int>(view.observations.size());
   if (!tie_to_map(view.observations, frame)) return frame;
   view.spread = frame.anchor.spread;

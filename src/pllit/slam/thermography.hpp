@@ -66,6 +66,7 @@ class Thermography {
 
   Camera camera_;
   ThermographyConfig config_;
+  std::optional<RadiometricEquation> radiometric_;  // none where apparent temperatures, or greys, are kept
   ThermalMap map_;
   SightLog sights_;
   AnomalyDetector detector_;

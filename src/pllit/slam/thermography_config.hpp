@@ -3,6 +3,7 @@
 
 #include "pllit/map/anchor.hpp"
 #include "pllit/map/anomalies.hpp"
+#include "pllit/map/radiometry.hpp"
 #include "pllit/map/recent_surface.hpp"
 
 namespace pllit {
@@ -11,6 +12,7 @@ struct ThermographyConfig {
   /// What the camera's numbers are, and with it what may be claimed. Greys and counts tell of changes only.
   IntensityUnit unit = IntensityUnit::grey;
   double kelvin_per_count = 0.01, kelvin_at_zero = 0.0;  ///< of radiometric images
+  Radiometry radiometry;                                 ///< of their scene
   double saturated_grey = 240.0;                         ///< from here on, greys of 8-bit video say "at least"
   SamplingConfig sampling;
   ThermalMapConfig map;
