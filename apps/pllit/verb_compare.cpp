@@ -34,19 +34,25 @@ struct Visit {
   VisitHeat seen;
 };
 
-/// Where the LiDAR stood when it measured each point of the map. Before the first pose and where the run was killed
-/// before it wrote down the rig, that is not known.
-std::vector<Sightline> sightlines_of(const Session& session) {
-  const auto* times_s = find_field(session.map, "time");
-  if (!session.run || !times_s || session.odometry.empty()) return {};
+/// Where the LiDAR was on the rig; nothing where the run was killed before it wrote that down.
+std::optional<SE3> lidar_on_rig(const Session& session) {
+  if (!session.run || session.odometry.empty()) return std::nullopt;
   const auto config = load_config(session.run->value("config", ""), "run.json");
-  if (!config) return {};
-  const SE3 T_I_L = make_rig(config->rig).T_I_L;
+  return config ? std::optional(make_rig(config->rig).T_I_L) : std::nullopt;
+}
+
+/// Points of the map, each with the place that the LiDAR measured it from.
+std::vector<Sightline> sightlines_of(const Session& session, const std::optional<SE3>& T_I_L) {
+  const auto* times_s = find_field(session.map, "time");
   std::vector<Sightline> lines_W;
   for (std::size_t i = 0; i < session.map.points.size(); ++i) {
-    const Time time = session.odometry.front().time + from_seconds(static_cast<double>((*times_s)[i]));
-    if (const auto T_W_I = pose_at(session.trajectory, time, std::chrono::seconds(1)))
-      lines_W.push_back({(*T_W_I * T_I_L).translation().cast<float>(), session.map.points[i]});
+    Sightline line{session.map.points[i], session.map.points[i]};
+    if (T_I_L && times_s) {
+      const Time time = session.odometry.front().time + from_seconds(static_cast<double>((*times_s)[i]));
+      if (const auto T_W_I = pose_at(session.trajectory, time, std::chrono::seconds(1)))
+        line.from_W = (*T_W_I * *T_I_L).translation().cast<float>();
+    }
+    lines_W.push_back(line);
   }
   return lines_W;
 }
@@ -58,8 +64,9 @@ Expected<Visit> read_visit(const fs::path& folder) {
     return input_error(std::format("'{}' holds no thermal_map.ply: that run saw no images", folder.string()));
   auto heat = read_ply(folder / "thermal_map.ply");
   if (!heat) return std::unexpected(heat.error());
-  auto sightlines_W = sightlines_of(*session);
-  if (sightlines_W.empty())
+  const auto T_I_L = lidar_on_rig(*session);
+  auto sightlines_W = sightlines_of(*session, T_I_L);
+  if (!T_I_L)
     spdlog::warn("'{}' does not say where its LiDAR was on the rig: what is new or gone cannot be told by it",
                  folder.string());
   return Visit{
@@ -94,10 +101,10 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
   move(visit->seen, located->T_A_B);
   const VisitChanges found = changes_between(baseline.seen, visit->seen);
   if (!found.same_site)
-    return input_error(
-        std::format("comparing '{}': where it fits onto '{}' only {:.0f} % of its surfaces lie on surfaces seen there; "
-                    "are they of the same site?",
-                    folder, baseline_folder, 100.0 * found.seen_again));
+    return input_error(std::format(
+        "comparing '{}': where it fits onto '{}' only {:.0f} % of its surfaces lie on surfaces measured there; "
+        "are they of the same site?",
+        folder, baseline_folder, 100.0 * found.surfaces_shared));
   Json json{{"session", folder},
             {"T_baseline_session", pose_json(located->T_A_B)},
             {"relocalisation",
@@ -105,6 +112,7 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
               {"agreeing", located->agreeing},
               {"overlap", located->overlap},
               {"rmse_m", located->rmse_m}}},
+            {"surfaces_shared", found.surfaces_shared},
             {"voxels", {{"shared", found.shared}, {"not_seen_again", found.only_before}, {"only_now", found.only_now}}},
             {"drift",
              {{"holds", found.drift.covered() > 0.0},
@@ -127,7 +135,7 @@ std::string visit_text(const Json& visit) {
       std::format("{}\n  found its place: {} of {} places agree, {:.0f} mm across surfaces\n",
                   visit["session"].get<std::string>(), visit["relocalisation"]["agreeing"].get<int>(),
                   visit["relocalisation"]["places"].get<int>(), 1e3 * visit["relocalisation"]["rmse_m"].get<double>());
-  text += std::format("  seen again: {:.0f} % of the baseline's surfaces ({} voxels)\n",
+  text += std::format("  images showed again: {:.0f} % of what the baseline's did ({} voxels)\n",
                       100.0 * shared / std::max(1, shared + missed), shared);
   if (!visit["drift"]["holds"].get<bool>())
     return text + "  the visits' intensities fit to each other by no curve: nothing is said about changes\n";

@@ -1,5 +1,7 @@
 #include "pllit/map/seen_space.hpp"
 
+#include <algorithm>
+
 #include "pllit/geometry/voxel_neighbours.hpp"
 
 namespace pllit {
@@ -29,6 +31,16 @@ bool SeenSpace::surface_at(VoxelKey key) const {
 bool SeenSpace::looked_through(VoxelKey key) const {
   const Cell* cell = cells_.find(key);
   return cell && cell->free;
+}
+
+double SeenSpace::share_in(const SeenSpace& other) const {
+  int surfaces = 0, shared = 0;
+  cells_.for_each([&](VoxelKey key, const Cell& cell) {
+    if (!cell.surface) return;
+    ++surfaces;
+    shared += other.surface_at(key) ? 1 : 0;
+  });
+  return static_cast<double>(shared) / std::max(1, surfaces);
 }
 
 }  // namespace pllit

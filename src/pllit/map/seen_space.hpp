@@ -9,7 +9,7 @@
 
 namespace pllit {
 
-/// From where the LiDAR was to what it measured, in W.
+/// From where the LiDAR was to what it measured, in W; both the same where it is not known where the LiDAR was.
 struct Sightline {
   Vector3f from_W, to_W;
 };
@@ -28,6 +28,8 @@ class SeenSpace {
   bool surface_at(VoxelKey key) const;
   /// Whether a line went through a voxel.
   bool looked_through(VoxelKey key) const;
+  /// Share of the voxels in which this visit measured a point that are surfaces of another visit too.
+  double share_in(const SeenSpace& other) const;
 
  private:
   struct Cell {

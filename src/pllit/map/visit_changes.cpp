@@ -87,22 +87,22 @@ void add_known(const Voxels& before, const Voxels& now, const VisitDrift& drift,
   }
 }
 
-/// Surfaces where the first visit's LiDAR knew none, amid others whose heat it knew.
-void add_new(const Voxels& before, const Voxels& now, const SeenSpace& space_before, const VisitDrift& drift,
-             const VisitChangesConfig& config, std::map<VoxelKey, Changed>& changed) {
+/// Surfaces where the first visit's LiDAR knew none, hotter than those around that it knew: as the second visit sees
+/// both, for the first one's camera may have looked elsewhere.
+void add_new(const Voxels& now, const SeenSpace& space_before, const VisitChangesConfig& config,
+             std::map<VoxelKey, Changed>& changed) {
   const int reach = std::max(1, static_cast<int>(config.surround_m / config.voxel_m));
   for (const auto& [key, seen] : now) {
     if (space_before.surface_at(key)) continue;
     std::vector<double> around;
     for_neighbours(key, reach, [&](VoxelKey next) {
-      if (const auto past = before.find(next); past != before.end()) around.push_back(past->second.mean());
+      const auto other = now.find(next);
+      if (other != now.end() && space_before.surface_at(next)) around.push_back(other->second.mean());
     });
     const auto surroundings = surroundings_of(std::move(around));
     if (!surroundings) continue;
-    const auto brought = drift.bring(seen.mean_W(), seen.mean());
-    if (!brought) continue;
-    const double change = brought->value - surroundings->upper;
-    const double sigma = std::hypot(surroundings->spread, std::sqrt(seen.mean_variance_below()), brought->sigma);
+    const double change = seen.mean() - surroundings->upper;
+    const double sigma = std::hypot(surroundings->spread, std::sqrt(seen.mean_variance_below()));
     if (change > std::max(config.min_change, config.gate_sigmas * sigma))
       changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma});
   }
@@ -175,15 +175,14 @@ VisitChanges changes_between(const VisitHeat& before, const VisitHeat& now, cons
   VisitChanges result{.drift = drift_between(past, present, config)};
   for (const auto& [key, known] : present) ++(past.contains(key) ? result.shared : result.only_now);
   result.only_before = static_cast<int>(past.size()) - result.shared;
-  result.seen_again =
-      result.shared / std::max(1.0, double(result.shared + std::min(result.only_before, result.only_now)));
-  result.same_site = result.seen_again >= config.least_seen_again;
-  if (!result.same_site) return result;
   const SeenSpace space_before(before.sightlines_W, {.voxel_m = config.voxel_m}),
       space_now(now.sightlines_W, {.voxel_m = config.voxel_m});
+  result.surfaces_shared = std::max(space_before.share_in(space_now), space_now.share_in(space_before));
+  result.same_site = result.surfaces_shared >= config.least_shared;
+  if (!result.same_site) return result;
   std::map<VoxelKey, Changed> changed;
   add_known(past, present, result.drift, config, changed);
-  add_new(past, present, space_before, result.drift, config, changed);
+  add_new(present, space_before, config, changed);
   add_gone(past, present, space_now, changed);
   result.changes = clusters(std::move(changed), space_before, space_now, config);
   return result;

@@ -26,13 +26,13 @@ struct VisitChangesConfig {
   int min_voxels = 4;        ///< smaller clusters are noise
   /// Means of a voxel's points on the two visits that lie farther apart are of different surfaces.
   double same_place_m = 0.05;
-  double looked_through = 0.6;  ///< share of the voxels of what is new, or gone, that the other visit looked through
-  int gone_voxels = 8;          ///< what is smaller and gone is not worth a word
+  double looked_through = 0.6;    ///< share of the voxels of what is new, or gone, that the other visit looked through
+  int gone_voxels = 8;            ///< what is smaller and gone is not worth a word
   double saturated_doubt = 60.0;  ///< what a wholly saturated voxel's sigma contains; see VoxelModelConfig
   double surround_m = 0.8;        ///< how far around a new surface its surroundings are looked at
-  /// Share of the smaller visit's surfaces that the other must have seen: rooms of one building style fit onto each
-  /// other here and there, but what one visit saw of a site, another sees again.
-  double least_seen_again = 0.3;
+  /// Share of one visit's surfaces, as its LiDAR measured them, that must be the other's too: rooms of one building
+  /// style fit onto each other here and there, but what one visit saw of a site, another sees again.
+  double least_shared = 0.7;
   VisitDriftConfig drift{};
 };
 
@@ -48,7 +48,7 @@ struct VisitChange {
 struct VisitChanges {
   VisitDrift drift;                               ///< where it does not hold, nothing is judged
   int shared = 0, only_before = 0, only_now = 0;  ///< voxels
-  double seen_again = 0.0;                        ///< share of the smaller visit's voxels that are shared
+  double surfaces_shared = 0.0;                   ///< of the visit of which more is the other's too, see least_shared
   bool same_site = false;                         ///< enough of them
   std::vector<VisitChange> changes{};             ///< greatest first
 };
