@@ -20,6 +20,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PLLIT = str(ROOT / "pllit")
 TIERS = ["smoke", "short", "full"]
+COMPRESSED = {"ntu4dradlm"}  # presets that name a compressed topic
 
 
 def arguments():
@@ -62,8 +63,10 @@ def recording(row, seed, wanted, duration=None):
     bag = folder / (f"{row['name']}-{seed}" + (f"-{duration:g}s" if duration else "") + ".bag")
     if not bag.exists() or not bag.with_suffix(".scene.json").exists():
         part = bag.with_name("unfinished-" + bag.name)
-        command = [PLLIT, "simulate", row["name"], "--seed", str(seed), "--jpeg", "95", "--overwrite", "--out", str(part)]
-        subprocess.run(command + (["--duration", str(duration)] if duration else []), check=True, stdout=subprocess.DEVNULL)
+        command = [PLLIT, "simulate", row["name"], "--seed", str(seed), "--overwrite", "--out", str(part)]
+        command += ["--jpeg", "95"] if row["config"] in COMPRESSED else []
+        command += ["--duration", str(duration)] if duration else []
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         for file in folder.glob(part.stem + ".*"):
             file.rename(file.with_name(file.name.removeprefix("unfinished-")))
         keep_within(folder, wanted.cache_gb * 1e9)

@@ -32,7 +32,7 @@ struct VisitChangesConfig {
   double surround_m = 0.8;        ///< how far around a new surface its surroundings are looked at
   /// Share of one visit's surfaces, as its LiDAR measured them, that must be the other's too: rooms of one building
   /// style fit onto each other here and there, but what one visit saw of a site, another sees again.
-  double least_shared = 0.7;
+  double least_shared = 0.8;
   VisitDriftConfig drift{};
 };
 

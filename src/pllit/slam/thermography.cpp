@@ -99,7 +99,10 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
   for (SurfaceObservation& observation : view.observations) {
     const double seen = observation.intensity, radius2 = squared_radius(observation.pixel_px, camera_);
     observation.intensity = static_cast<float>(anchor_(seen, radius2));
-    observation.doubt = static_cast<float>(anchor_.doubt(seen, radius2));
+    // Beside an edge a few pixels decide what is read, and from elsewhere it is something else.
+    const double aim =
+        std::abs(anchor_(seen + static_cast<double>(observation.contrast), radius2) - anchor_(seen, radius2));
+    observation.doubt = static_cast<float>(std::hypot(anchor_.doubt(seen, radius2), aim));
     observation.saturated = input.raw.depth() == CV_8U && observation.raw >= config_.saturated_grey;
   }
   const std::vector<VoxelKey> seen = map_.integrate(view);
