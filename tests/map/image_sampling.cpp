@@ -141,21 +141,6 @@ TEST(SampleImage, LeavesOutWhatIsSeenAtAGrazingAngleOrTooFar) {
   EXPECT_EQ(observations[1].cos_incidence, 1.0F);
 }
 
-TEST(SampleImage, TellsHowMuchAFewPixelsBesideWouldRead) {
-  ImagePair images = pattern_images();
-  images.calibrated.setTo(100.0F);
-  images.calibrated.colRange(camera().width / 2, camera().width).setTo(180.0F);
-  const auto contrast_at = [&](double px) {
-    const Vector3d ray = camera().ray({camera().width / 2 + px, 0.5 * camera().height});
-    return sample_image({.points_W = {(3.0 * ray).cast<float>()}, .normals_W = {}}, SE3::Identity(), camera(), images,
-                        {})
-        .at(0)
-        .contrast;
-  };
-  for (const double px : {-40.0, -6.0, 6.0, 40.0}) EXPECT_EQ(contrast_at(px), 0.0F) << px;
-  for (const double px : {-1.5, 1.0}) EXPECT_NEAR(contrast_at(px), 80.0F, 1.0F) << px;
-}
-
 TEST(SampleImage, ReadsSixteenBits) {
   ImagePair images = pattern_images();
   images.raw = cv::Mat(camera().height, camera().width, CV_16UC1, cv::Scalar(54321));

@@ -108,15 +108,6 @@ float read_bilinear(const cv::Mat& image, const Eigen::Vector2d& pixel_px) {
   return (1.0F - y) * ((1.0F - x) * upper[0] + x * upper[1]) + y * ((1.0F - x) * lower[0] + x * lower[1]);
 }
 
-/// The most that the image differs from its value at a pixel `distance_px` above, below, left and right of it.
-float contrast_at(const cv::Mat& image, const Eigen::Vector2d& pixel_px, float value, double distance_px) {
-  float most = 0.0F;
-  for (const Eigen::Vector2d& side : {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.0, 1.0)})
-    for (const double sign : {-1.0, 1.0})
-      most = std::max(most, std::abs(read_bilinear(image, pixel_px + sign * distance_px * side) - value));
-  return most;
-}
-
 float read_raw(const cv::Mat& image, const Eigen::Vector2d& pixel_px) {
   const int column = static_cast<int>(pixel_px.x() + 0.5), row = static_cast<int>(pixel_px.y() + 0.5);
   return image.depth() == CV_8U ? static_cast<float>(image.at<std::uint8_t>(row, column))
@@ -130,7 +121,7 @@ std::vector<SurfaceObservation> sample_image(const SurfacePoints& points, const 
   assert(points.normals_W.empty() || points.normals_W.size() == points.points_W.size());
   assert(images.calibrated.type() == CV_32FC1 && images.calibrated.size() == images.raw.size());
   assert(images.raw.cols == camera.width && images.raw.rows == camera.height);
-  assert(config.border_px >= config.aim_px);
+  assert(config.border_px >= 0);
   const CellGrid empty(camera, config.cell_px, kInfinity);
   std::vector<Projected> seen = projected(points.points_W, T_W_C, camera, config, empty);
   keep_unobstructed(seen, empty, config);
@@ -147,7 +138,6 @@ std::vector<SurfaceObservation> sample_image(const SurfacePoints& points, const 
       if (observation.cos_incidence < static_cast<float>(config.min_cos_incidence)) continue;
     }
     observation.intensity = read_bilinear(images.calibrated, point.pixel_px);
-    observation.contrast = contrast_at(images.calibrated, point.pixel_px, observation.intensity, config.aim_px);
     observation.raw = read_raw(images.raw, point.pixel_px);
     observation.range_m = point.range_m;
     observation.footprint_m = point.range_m / px_per_rad;

@@ -15,8 +15,7 @@ struct SurfaceObservation {
   Vector3d p_W;                ///< m
   Eigen::Vector2f pixel_px;    ///< where it was read, distorted
   float intensity = 0.0F;      ///< calibrated, in the map's unit
-  float contrast = 0.0F;       ///< most that it differs from what lies SamplingConfig::aim_px beside it
-  float doubt = 0.0F;          ///< of calibration and aim there, one sigma, in the map's unit
+  float doubt = 0.0F;          ///< of the calibration there, one sigma, in the map's unit
   bool saturated = false;      ///< at least so bright
   float raw = 0.0F;            ///< as the camera gave it, of the nearest pixel
   float cos_incidence = 1.0F;  ///< between ray and normal; 1 where the normal is not known
@@ -33,7 +32,6 @@ struct SamplingConfig {
   /// calibration and clocks are imperfect.
   int shadow_px = 8;
   int edge_px = 3;             ///< nor is one within so many pixels of a farther one, where the image mixes the two
-  double aim_px = 2.0;         ///< error of where a point is read: calibration, clocks, the map's voxels
   double depth_step_m = 0.08;  ///< what makes one surface nearer than another: this ...
   double depth_step_share = 0.035;  ///< ... and this share of the range
 };

@@ -88,8 +88,9 @@ void add_to(std::uint64_t& digest, const T& value) {
 
 }  // namespace
 
-std::vector<RegionReading> region_readings(const PointTable& baseline, const PointTable& visit, const BringIntensity& bring,
-                                           std::span<const Region> regions, const RegionsConfig& config) {
+std::vector<RegionReading> region_readings(const PointTable& baseline, const PointTable& visit,
+                                           const BringIntensity& bring, std::span<const Region> regions,
+                                           const RegionsConfig& config) {
   std::vector<RegionReading> readings;
   for (const Region& region : regions)
     readings.push_back(reading_of(region, voxels_in(region, baseline, "normal", config),

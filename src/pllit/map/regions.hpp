@@ -26,8 +26,9 @@ struct RegionsConfig {
 using BringIntensity = std::function<std::optional<double>(const Vector3d& p_W, double intensity)>;
 
 /// A visit's readings, one for each region. Both maps as ThermalMap::table gives them and in the baseline's W.
-std::vector<RegionReading> region_readings(const PointTable& baseline, const PointTable& visit, const BringIntensity& bring,
-                                           std::span<const Region> regions, const RegionsConfig& config = {});
+std::vector<RegionReading> region_readings(const PointTable& baseline, const PointTable& visit,
+                                           const BringIntensity& bring, std::span<const Region> regions,
+                                           const RegionsConfig& config = {});
 
 /// What the baseline itself shows: the first point of every trend.
 std::vector<RegionReading> baseline_readings(const PointTable& baseline, std::span<const Region> regions,

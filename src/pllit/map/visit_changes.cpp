@@ -60,6 +60,7 @@ struct Changed {
   VisitChangeKind kind;
   Vector3d p_W;
   double change, sigmas;
+  int points = 1;
 };
 
 /// Changes of surfaces that both visits saw, by at least the gate. At seams one of two neighbouring voxels may hold
@@ -104,7 +105,7 @@ void add_new(const Voxels& now, const SeenSpace& space_before, const VisitChange
     const double change = seen.mean() - surroundings->upper;
     const double sigma = std::hypot(surroundings->spread, std::sqrt(seen.mean_variance_below()));
     if (change > std::max(config.min_change, config.gate_sigmas * sigma))
-      changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma});
+      changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma, seen.points});
   }
 }
 
@@ -115,12 +116,21 @@ void add_gone(const Voxels& before, const Voxels& now, const SeenSpace& space_no
       changed.emplace(key, Changed{VisitChangeKind::gone, past.mean_W(), 0.0, 0.0});
 }
 
+/// Whether a cluster is large enough.
+bool fills(const std::vector<Changed>& cluster, const VisitChangesConfig& config) {
+  const auto voxels = static_cast<int>(cluster.size());
+  if (cluster.front().kind == VisitChangeKind::gone) return voxels >= config.gone_voxels;
+  if (cluster.front().kind != VisitChangeKind::new_hot) return voxels >= config.min_voxels;
+  int points = 0;
+  for (const Changed& one : cluster) points += one.points;
+  return voxels >= 2 && points >= config.new_points;
+}
+
 /// Whether a cluster is to be told. Of what a visit's sightlines only brush past at the edges, it says nothing.
 bool counts(const std::vector<Changed>& cluster, const SeenSpace& space_before, const SeenSpace& space_now,
             const VisitChangesConfig& config) {
   const VisitChangeKind kind = cluster.front().kind;
-  const int least = kind == VisitChangeKind::gone ? config.gone_voxels : config.min_voxels;
-  if (static_cast<int>(cluster.size()) < least) return false;
+  if (!fills(cluster, config)) return false;
   if (kind != VisitChangeKind::new_hot && kind != VisitChangeKind::gone) return true;
   const SeenSpace& other = kind == VisitChangeKind::gone ? space_now : space_before;
   const auto through = std::ranges::count_if(cluster, [&](const Changed& one) {

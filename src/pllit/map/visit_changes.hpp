@@ -23,7 +23,8 @@ struct VisitChangesConfig {
   int images = 6;            ///< of a surface on each visit, at least
   double min_change = 30.0;  ///< in the map's unit
   double gate_sigmas = 3.0;  ///< of the surface's spread and of the drift's fit
-  int min_voxels = 4;        ///< smaller clusters are noise
+  int min_voxels = 4;        ///< smaller clusters are noise ...
+  int new_points = 5;        ///< ... but of what is new, two voxels will do with so many of the map's points in them
   /// Means of a voxel's points on the two visits that lie farther apart are of different surfaces.
   double same_place_m = 0.05;
   double looked_through = 0.6;    ///< share of the voxels of what is new, or gone, that the other visit looked through

@@ -30,8 +30,7 @@ AnchorPair pair_of(const SharedVoxel& voxel, double usual_variance) {
 
 }  // namespace
 
-VisitDrift::VisitDrift(std::span<const SharedVoxel> shared, const VisitDriftConfig& config)
-    : block_m_(config.block_m) {
+VisitDrift::VisitDrift(std::span<const SharedVoxel> shared, const VisitDriftConfig& config) : block_m_(config.block_m) {
   const double usual = median_variance(shared);
   std::vector<AnchorPair> pairs;
   std::map<VoxelKey, std::vector<std::size_t>> members;

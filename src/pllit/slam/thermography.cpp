@@ -40,7 +40,7 @@ bool same_pixels(const cv::Mat& a, const cv::Mat& b) {
 }
 
 /// At most `most` of the points, evenly by index.
-std::vector<Vector3f> thinned(const std::vector<Vector3f>& points, std::size_t most) {
+std::vector<Vector3f> at_most(const std::vector<Vector3f>& points, std::size_t most) {
   if (points.size() <= most) return points;
   std::vector<Vector3f> kept(most);
   for (std::size_t i = 0; i < most; ++i) kept[i] = points[i * points.size() / most];
@@ -99,10 +99,7 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
   for (SurfaceObservation& observation : view.observations) {
     const double seen = observation.intensity, radius2 = squared_radius(observation.pixel_px, camera_);
     observation.intensity = static_cast<float>(anchor_(seen, radius2));
-    // Beside an edge a few pixels decide what is read, and from elsewhere it is something else.
-    const double aim =
-        std::abs(anchor_(seen + static_cast<double>(observation.contrast), radius2) - anchor_(seen, radius2));
-    observation.doubt = static_cast<float>(std::hypot(anchor_.doubt(seen, radius2), aim));
+    observation.doubt = static_cast<float>(anchor_.doubt(seen, radius2));
     observation.saturated = input.raw.depth() == CV_8U && observation.raw >= config_.saturated_grey;
   }
   const std::vector<VoxelKey> seen = map_.integrate(view);
@@ -134,7 +131,7 @@ void Thermography::remember_scan(const ThermographyInput& input) {
     const auto plane = input.planes->plane_at(p_W);
     return plane ? Vector3f(plane->normal_W().cast<float>()) : Vector3f(Vector3f::Zero());
   };
-  scans_.push_back(thinned(input.points_W, static_cast<std::size_t>(config_.scan_points)));
+  scans_.push_back(at_most(input.points_W, static_cast<std::size_t>(config_.scan_points)));
   surface_.add(scans_.back(), input.T_W_C.translation(), input.time, normal_at);
   while (static_cast<int>(scans_.size()) > config_.scans) scans_.pop_front();
   std::vector<Vector3f> fresh_W;
