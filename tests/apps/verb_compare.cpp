@@ -48,13 +48,14 @@ std::vector<Vector3f> site(unsigned noise_seed) {
   return points;
 }
 
-/// Six metres by three of a wall with warm and cool bricks at y = 3 m, and a pump of 0.6 m in its middle.
+/// Six metres by three of a wall with bricks from cool to hot at y = 3 m, and a pump of 0.6 m in its middle, about as
+/// bright as the hottest of them.
 PointTable heat_of(const SimpleVisit& visit) {
   PointTable table{.points = {}, .fields = {{"intensity", {}}, {"normal", {}}, {"sigma", {}}, {"images", {}}}};
   for (int i = 0; i < 120; ++i)
     for (int k = 0; k < 60; ++k) {
       const bool pump = std::abs(i - 60) < 6 && std::abs(k - 30) < 6;
-      const double value = visit.gain * (pump ? visit.pump : 80.0 + 40.0 * ((i / 8 + k / 8) % 2)) + visit.bias;
+      const double value = visit.gain * (pump ? visit.pump : 80.0 + 30.0 * ((i / 8 + k / 8) % 4)) + visit.bias;
       table.points.emplace_back(0.05F * static_cast<float>(i) - 3.0F, 3.0F, 0.05F * static_cast<float>(k));
       for (const int field : {0, 1}) table.fields[field].values.push_back(static_cast<float>(value));
       table.fields[2].values.push_back(4.0F);
