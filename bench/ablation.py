@@ -13,13 +13,10 @@ the change of their median, and its 95 % interval by a bootstrap over blocks of 
 
 import argparse
 import csv
-import json
 import pathlib
 import random
-import shutil
 import statistics
 import subprocess
-import sys
 
 import sequences
 
@@ -62,20 +59,11 @@ def errors_of(truth, session, delta):
 def run(row, seed, step, wanted):
     """Summary and errors of a run; nothing where it failed."""
     name = f"{row['name']}-{seed}" + (f"-{wanted.duration:g}s" if wanted.duration else "") + f"-{step}"
-    session, summary = wanted.out / name, wanted.out / name / "summary.json"
     bag = sequences.recording(row, seed, wanted, wanted.duration)
-    truth = bag.with_suffix(".tum")
-    if not summary.exists():
-        shutil.rmtree(session, ignore_errors=True)
-        command = [sequences.PLLIT, "run", str(bag), "--truth", str(truth), "--config", row["config"], "--json", "--out", str(session)]
-        for setting in ["loop.enabled=false"] + STEPS[step]:
-            command += ["--set", setting]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode not in (0, 3):
-            print(f"{name}: exit code {done.returncode}\n{done.stderr[-2000:]}", file=sys.stderr)
-            return None
-        summary.write_text(done.stdout)
-    return {"summary": json.loads(summary.read_text()), "errors": errors_of(truth, session, delta_of(row))}
+    truth, session = bag.with_suffix(".tum"), wanted.out / name
+    settings = [part for setting in ["loop.enabled=false"] + STEPS[step] for part in ("--set", setting)]
+    summary = sequences.summary_of(session, [str(bag), "--truth", str(truth), "--config", row["config"]] + settings)
+    return summary and {"summary": summary, "errors": errors_of(truth, session, delta_of(row))}
 
 
 def blocks(errors, base, delta, column):

@@ -73,26 +73,28 @@ def recording(row, seed, wanted, duration=None):
     return bag
 
 
-def run(row, seed, wanted):
-    """The summary of a run: an earlier one's, or a new one's. Nothing where it failed."""
-    session = wanted.out / f"{row['name']}-{seed}"
+def summary_of(session, arguments):
+    """The summary of `pllit run` with these arguments: an earlier run's, or a new one's. Nothing where it failed."""
     summary = session / "summary.json"
     if summary.exists():
         return json.loads(summary.read_text())
     shutil.rmtree(session, ignore_errors=True)
-    command = [PLLIT, "run"]
-    if wanted.images:
-        bag = recording(row, seed, wanted)
-        command += [str(bag), "--truth", str(bag.with_suffix(".tum"))]
-    else:
-        command += [f"sim:{row['name']}?seed={seed}"]
-    command += ["--config", row["config"], "--json", "--out", str(session)] + wanted.more
-    done = subprocess.run(command, capture_output=True, text=True)
+    done = subprocess.run([PLLIT, "run"] + arguments + ["--json", "--out", str(session)], capture_output=True, text=True)
     if done.returncode not in (0, 3):
-        print(f"{row['name']} seed {seed}: exit code {done.returncode}\n{done.stderr[-2000:]}", file=sys.stderr)
+        print(f"{session.name}: exit code {done.returncode}\n{done.stderr[-2000:]}", file=sys.stderr)
         return None
     summary.write_text(done.stdout)
     return json.loads(done.stdout)
+
+
+def run(row, seed, wanted):
+    """The summary of a row and seed; nothing where the run failed."""
+    if wanted.images:
+        bag = recording(row, seed, wanted)
+        source = [str(bag), "--truth", str(bag.with_suffix(".tum"))]
+    else:
+        source = [f"sim:{row['name']}?seed={seed}"]
+    return summary_of(wanted.out / f"{row['name']}-{seed}", source + ["--config", row["config"]] + wanted.more)
 
 
 def spread(values, digits):

@@ -6,9 +6,7 @@
 #include <tuple>
 
 #include "pllit/io/anomalies_file.hpp"
-#include "pllit/io/file.hpp"
 #include "pllit/io/regions_file.hpp"
-#include "pllit/io/tum.hpp"
 #include "pllit/map/regions.hpp"
 #include "pllit/slam/config_yaml.hpp"
 #include "region_words.hpp"
@@ -38,31 +36,29 @@ bool corrected_alike(const Radiometry& a, const Radiometry& b) {
 
 }  // namespace
 
-Expected<SessionFacts> session_facts(const fs::path& folder) {
-  const auto unit = read_unit(folder / "anomalies.json");
+Expected<SessionFacts> session_facts(const Session& session) {
+  const std::string folder = session.folder.string();
+  const auto unit = read_unit(session.folder / "anomalies.json");
   if (!unit) return std::unexpected(unit.error());
-  const auto trajectory = read_interrupted_tum(folder / "trajectory.tum");
-  if (!trajectory) return std::unexpected(trajectory.error());
-  const auto text = read_file(folder / "run.json");
-  if (!text) return std::unexpected(text.error());
-  const Json run = Json::parse(*text, nullptr, false);
-  if (trajectory->empty() || !run.is_object() || !run.contains("sources") || !run["sources"].is_array())
+  if (session.trajectory.empty() || !session.run || !session.run->contains("sources") ||
+      !(*session.run)["sources"].is_array())
     return input_error(
         std::format("'{}': does not say when and from what recording it was made (trajectory.tum, "
                     "run.json); run it again",
-                    folder.string()));
-  const auto config = load_config(run.value("config", ""), (folder / "run.json").string());
+                    folder));
+  const Json& run = *session.run;
+  const auto config = load_config(run.value("config", ""), (session.folder / "run.json").string());
   if (!config && *unit == IntensityUnit::kelvin) return std::unexpected(config.error());
-  return SessionFacts{{.start = trajectory->front().time,
+  return SessionFacts{{.start = session.trajectory.front().time,
                        .recordings = recordings_of(run["sources"]),
-                       .session = folder.string(),
+                       .session = folder,
                        .program = run.value("program", "")},
                       *unit,
                       *unit == IntensityUnit::kelvin ? config->thermography.radiometry : Radiometry{}};
 }
 
 Expected<RegionComparison> RegionComparison::open(const fs::path& regions, const fs::path& store,
-                                                  const fs::path& baseline, const PointTable& heat) {
+                                                  const Session& baseline, const PointTable& heat) {
   RegionComparison comparison;
   auto read = read_regions(regions);
   if (!read) return std::unexpected(read.error());
@@ -91,16 +87,16 @@ Expected<RegionComparison> RegionComparison::open(const fs::path& regions, const
   return comparison;
 }
 
-Expected<Json> RegionComparison::look(const fs::path& session, const PointTable& heat_W, const VisitDrift& drift) {
+Expected<Json> RegionComparison::look(const Session& session, const PointTable& heat_W, const VisitDrift& drift) {
   const auto facts = session_facts(session);
   if (!facts) return std::unexpected(facts.error());
   if (facts->unit != baseline_.unit)
     return input_error(std::format("'{}' is in {}, but the baseline '{}' in {}: their regions cannot be compared",
-                                   session.string(), name_of(facts->unit), baseline_.identity.session,
+                                   session.folder.string(), name_of(facts->unit), baseline_.identity.session,
                                    name_of(baseline_.unit)));
   if (!corrected_alike(facts->radiometry, baseline_.radiometry))
     spdlog::warn("'{}' was run with another advanced.radiometry than the baseline; run it again with the baseline's",
-                 session.string());
+                 session.folder.string());
   const auto bring = [&](const Vector3d& p_W, double intensity) -> std::optional<double> {
     const auto brought = drift.bring(p_W, intensity);
     return brought ? std::optional(brought->value) : std::nullopt;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pllit/io/session.hpp"
 #include "pllit/io/visit_store.hpp"
 #include "pllit/map/radiometry.hpp"
 #include "pllit/map/visit_drift.hpp"
@@ -15,24 +16,23 @@
 
 namespace pllit::app {
 
-/// What a session says of itself.
+/// What a session says of itself, but for its maps.
 struct SessionFacts {
   VisitIdentity identity;
   IntensityUnit unit = IntensityUnit::grey;
   Radiometry radiometry{};  ///< of temperatures: what they were corrected for
 };
-Expected<SessionFacts> session_facts(const std::filesystem::path& folder);
+Expected<SessionFacts> session_facts(const Session& session);
 
 class RegionComparison {
  public:
   /// Before anything is compared: reads the regions, and opens or begins the store (none where the name is empty).
   /// `heat` is the baseline's thermal map.
   static Expected<RegionComparison> open(const std::filesystem::path& regions, const std::filesystem::path& store,
-                                         const std::filesystem::path& baseline, const PointTable& heat);
+                                         const Session& baseline, const PointTable& heat);
 
   /// What a later session shows of each region, as an array. `heat_W` is its thermal map, in the baseline's frame.
-  Expected<nlohmann::ordered_json> look(const std::filesystem::path& session, const PointTable& heat_W,
-                                        const VisitDrift& drift);
+  Expected<nlohmann::ordered_json> look(const Session& session, const PointTable& heat_W, const VisitDrift& drift);
 
   /// Lines on what `look` found last.
   const std::string& text() const { return text_; }

@@ -1,9 +1,6 @@
 #include "region_words.hpp"
 
-#include <chrono>
 #include <format>
-
-#include "pllit/base/time.hpp"
 
 namespace pllit::app {
 namespace {
@@ -46,7 +43,5 @@ std::string reading_text(const RegionReading& reading, IntensityUnit unit) {
   if (reading.exceeded()) return text + "; LIMIT EXCEEDED";
   return text + (reading.change_exceeded || reading.kelvin_exceeded ? "; within its limits" : "");
 }
-
-std::string utc_text(Time time) { return std::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(time)); }
 
 }  // namespace pllit::app

@@ -16,7 +16,4 @@ nlohmann::ordered_json reading_json(const RegionReading& reading);
 /// One line without its end.
 std::string reading_text(const RegionReading& reading, IntensityUnit unit);
 
-/// "2026-11-22T03:00:42Z"
-std::string utc_text(Time time);
-
 }  // namespace pllit::app

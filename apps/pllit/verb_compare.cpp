@@ -30,6 +30,7 @@ struct CompareOptions {
 };
 
 struct Visit {
+  Session session;  ///< without its map's points, which stand below
   VisitMap map;
   VisitHeat seen;
 };
@@ -69,8 +70,8 @@ Expected<Visit> read_visit(const fs::path& folder) {
   if (!T_I_L)
     spdlog::warn("'{}' does not say where its LiDAR was on the rig: what is new or gone cannot be told by it",
                  folder.string());
-  return Visit{
-      {std::move(session->trajectory), std::move(session->map.points)}, std::move(*heat), std::move(sightlines_W)};
+  VisitMap map{session->trajectory, std::move(session->map.points)};
+  return Visit{std::move(*session), std::move(map), {std::move(*heat), std::move(sightlines_W)}};
 }
 
 void move(VisitHeat& seen, const SE3& T_A_B) {
@@ -123,7 +124,7 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
             {"changes", Json::array()}};
   for (const VisitChange& change : found.changes) json["changes"].push_back(change_json(change));
   if (!regions) return json;
-  auto looked = regions->look(folder, visit->seen.heat, found.drift);
+  auto looked = regions->look(visit->session, visit->seen.heat, found.drift);
   if (!looked) return std::unexpected(looked.error());
   json["regions"] = std::move(*looked);
   return json;
@@ -163,7 +164,7 @@ Expected<ExitCode> compare(const CompareOptions& options) {
   if (!baseline) return std::unexpected(baseline.error());
   std::optional<RegionComparison> regions;
   if (!options.regions.empty()) {
-    auto opened = RegionComparison::open(options.regions, options.store, options.baseline, baseline->seen.heat);
+    auto opened = RegionComparison::open(options.regions, options.store, baseline->session, baseline->seen.heat);
     if (!opened) return std::unexpected(opened.error());
     regions.emplace(std::move(*opened));
   }

@@ -64,7 +64,7 @@ Json series_json(const RegionSeries& series) {
   Json json{{"tag", series.tag}, {"definition", series.points.back().definition}, {"visits", Json::array()}};
   for (const auto& [visit, definition, reading] : series.points) {
     Json point{{"time_s", to_seconds(visit.start)},
-               {"time_utc", utc_text(visit.start)},
+               {"time_utc", utc_of(visit.start)},
                {"session", visit.session},
                {"program", visit.program},
                {"definition", definition}};
@@ -80,7 +80,7 @@ std::string series_text(const RegionSeries& series, IntensityUnit unit) {
   const std::string& definition_now = series.points.back().definition;
   std::string text = std::format("{}: {}\n", series.tag, definition_now);
   for (const auto& [visit, definition, reading] : series.points)
-    text += std::format("  {}  {}{}\n", utc_text(visit.start), reading_text(reading, unit),
+    text += std::format("  {}  {}{}\n", utc_of(visit.start), reading_text(reading, unit),
                         definition == definition_now ? "" : "; of another box: " + definition);
   const Trends trends = trends_of(series);
   return text + trend_text("change", trends.change, unit) + trend_text("95th percentile", trends.p95, unit);
@@ -97,10 +97,10 @@ Expected<std::string> trends(const TrendsOptions& options) {
   Json json{{"schema_version", kSchemaVersion},
             {"store", options.store},
             {"unit", name_of(unit)},
-            {"baseline", {{"session", baseline.session}, {"time_utc", utc_text(baseline.start)}}},
+            {"baseline", {{"session", baseline.session}, {"time_utc", utc_of(baseline.start)}}},
             {"regions", Json::array()}};
   std::string text =
-      std::format("changes are against the baseline {} of {}\n", baseline.session, utc_text(baseline.start));
+      std::format("changes are against the baseline {} of {}\n", baseline.session, utc_of(baseline.start));
   for (const RegionSeries& series : *wanted) {
     json["regions"].push_back(series_json(series));
     text += series_text(series, unit);

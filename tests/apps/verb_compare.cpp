@@ -7,7 +7,7 @@
 #include "pllit/io/file.hpp"
 #include "pllit/io/session.hpp"
 #include "run_program.hpp"
-#include "support/random_states.hpp"
+#include "support/walled_site.hpp"
 
 namespace pllit {
 namespace {
@@ -28,25 +28,6 @@ struct SimpleVisit {
   SE3 T_B_A = SE3::Identity();    ///< from the site's frame to the visit's
   IntensityUnit unit = IntensityUnit::grey;
 };
-
-/// Walls on a plain, forty metres square.
-std::vector<Vector3f> site(unsigned noise_seed) {
-  Random random(1), noise(noise_seed);
-  std::vector<Vector3f> points;
-  const auto add = [&](double x, double y, double z) {
-    points.push_back(Vector3d(x + noise.normal(0.01), y + noise.normal(0.01), z + noise.normal(0.01)).cast<float>());
-  };
-  for (int i = 0; i < 20000; ++i) add(noise.uniform(-20.0, 20.0), noise.uniform(-20.0, 20.0), 0.0);
-  for (int wall = 0; wall < 30; ++wall) {
-    const double x = random.uniform(-18.0, 18.0), y = random.uniform(-18.0, 18.0), turn = random.uniform(0.0, 6.3),
-                 length = random.uniform(2.0, 7.0), height = random.uniform(2.0, 5.0);
-    for (int i = 0; i < 1500; ++i) {
-      const double s = noise.uniform(0.0, length);
-      add(x + s * std::cos(turn), y + s * std::sin(turn), noise.uniform(0.0, height));
-    }
-  }
-  return points;
-}
 
 /// Six metres by three of a wall with bricks from cool to hot at y = 3 m, and a pump of 0.6 m in its middle, about as
 /// bright as the hottest of them.
@@ -73,7 +54,8 @@ class CompareVerb : public test::ProgramTest {
       EXPECT_TRUE(writer.append_pose(
           {time_from_parts(1'700'000'000, 0) + std::chrono::days(visit.day) + std::chrono::milliseconds(100 * i),
            visit.T_B_A * pose_from(SO3::Identity(), {-10.0 + 0.2 * i, 0.0, 1.5})}));
-    EXPECT_TRUE(writer.append_map({moved(site(10 + visit.day), visit.T_B_A), {}}));
+    Random noise(static_cast<unsigned>(10 + visit.day));
+    EXPECT_TRUE(writer.append_map({moved(test::walled_site(1, noise), visit.T_B_A), {}}));
     PointTable heat = heat_of(visit);
     heat.points = moved(heat.points, visit.T_B_A);
     EXPECT_TRUE(writer.write_cloud("thermal_map.ply", heat));

@@ -3,37 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "support/random_states.hpp"
+#include "support/walled_site.hpp"
 
 namespace pllit {
 namespace {
 
 using test::Random;
 
-/// Walls and sheds on a plain, forty metres square, the same for the same seed.
-std::vector<Vector3f> site(unsigned seed, Random& noise) {
-  Random random(seed);
-  std::vector<Vector3f> points;
-  const auto add = [&](double x, double y, double z) {
-    points.emplace_back(static_cast<float>(x + noise.normal(0.01)), static_cast<float>(y + noise.normal(0.01)),
-                        static_cast<float>(z + noise.normal(0.01)));
-  };
-  for (int i = 0; i < 20000; ++i) add(noise.uniform(-20.0, 20.0), noise.uniform(-20.0, 20.0), 0.0);
-  for (int wall = 0; wall < 30; ++wall) {
-    const double x = random.uniform(-18.0, 18.0), y = random.uniform(-18.0, 18.0), turn = random.uniform(0.0, 6.3),
-                 length = random.uniform(2.0, 7.0), height = random.uniform(2.0, 5.0);
-    for (int i = 0; i < 1500; ++i) {
-      const double s = noise.uniform(0.0, length);
-      add(x + s * std::cos(turn), y + s * std::sin(turn), noise.uniform(0.0, height));
-    }
-  }
-  return points;
-}
-
 /// A walk through it at breast height.
 VisitMap visit(unsigned seed, unsigned noise_seed, double from_y) {
   Random noise(noise_seed);
-  VisitMap visit{.trajectory = {}, .points_W = site(seed, noise)};
+  VisitMap visit{.trajectory = {}, .points_W = test::walled_site(seed, noise)};
   for (int i = 0; i <= 100; ++i)
     visit.trajectory.push_back(
         {Time(std::chrono::milliseconds(100 * i)), pose_from(SO3::Identity(), Vector3d(-10.0 + 0.2 * i, from_y, 1.5))});

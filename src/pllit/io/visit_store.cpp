@@ -143,8 +143,6 @@ RegionReading reading_at(const SqliteStatement& row, int column) {
   return reading;
 }
 
-std::string utc_of(Time time) { return std::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(time)); }
-
 /// Whether visits compared with this baseline may go into the store.
 Expected<void> check_baseline(const std::string& name, const StoreBaseline& held, const StoreBaseline& wanted) {
   if (held.digest == wanted.digest && held.unit == wanted.unit) return {};
@@ -154,6 +152,8 @@ Expected<void> check_baseline(const std::string& name, const StoreBaseline& held
 }
 
 }  // namespace
+
+std::string utc_of(Time time) { return std::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(time)); }
 
 VisitStore::VisitStore(std::unique_ptr<SqliteDatabase> database, StoreBaseline baseline)
     : database_(std::move(database)), baseline_(std::move(baseline)) {}

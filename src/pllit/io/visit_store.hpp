@@ -15,6 +15,9 @@
 
 namespace pllit {
 
+/// "2026-11-22T03:00:42Z"
+std::string utc_of(Time time);
+
 class SqliteDatabase;
 
 /// PRAGMA user_version of a store; raised when tables change.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "pllit/base/evenly.hpp"
 #include "pllit/loop/submap.hpp"
 
 namespace pllit {
@@ -53,14 +54,5 @@ ColumnMatch search(const ColumnField& a, const std::vector<Column>& b, const Sea
 
 /// Share of b's columns within `radius_m` of its anchor that have one of a's within 0.7 m.
 double overlap(const ColumnField& a, const std::vector<Column>& b, const PlanePose& T_a_b, double radius_m);
-
-/// At most `count` values, evenly by index.
-template <class Value>
-std::vector<Value> evenly(const std::vector<Value>& values, std::size_t count) {
-  if (values.size() <= count) return values;
-  std::vector<Value> kept;
-  for (std::size_t i = 0; i < count; ++i) kept.push_back(values[i * values.size() / count]);
-  return kept;
-}
 
 }  // namespace pllit

@@ -154,12 +154,7 @@ class ThermalSensor : public CameraSensor {
     model.rate_hz = stream.rate_hz;
     if (stream.ideal) {
       model.netd_K = 0.0;
-      model.fixed_pattern = {.column_walk = 0.0,
-                             .pixel_walk = 0.0,
-                             .whole_walk = 0.0,
-                             .column_left = 0.0,
-                             .pixel_left = 0.0,
-                             .whole_left = 0.0};
+      model.fixed_pattern = kNoFixedPattern;
     }
     return model;
   }

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <opencv2/core.hpp>
 
+#include "pllit/base/evenly.hpp"
+
 namespace pllit {
 namespace {
 
@@ -37,14 +39,6 @@ bool same_pixels(const cv::Mat& a, const cv::Mat& b) {
   for (int row = 0; row < a.rows; ++row)
     if (std::memcmp(a.ptr(row), b.ptr(row), static_cast<std::size_t>(a.cols) * a.elemSize()) != 0) return false;
   return true;
-}
-
-/// At most `most` of the points, evenly by index.
-std::vector<Vector3f> at_most(const std::vector<Vector3f>& points, std::size_t most) {
-  if (points.size() <= most) return points;
-  std::vector<Vector3f> kept(most);
-  for (std::size_t i = 0; i < most; ++i) kept[i] = points[i * points.size() / most];
-  return kept;
 }
 
 }  // namespace
@@ -131,7 +125,7 @@ void Thermography::remember_scan(const ThermographyInput& input) {
     const auto plane = input.planes->plane_at(p_W);
     return plane ? Vector3f(plane->normal_W().cast<float>()) : Vector3f(Vector3f::Zero());
   };
-  scans_.push_back(at_most(input.points_W, static_cast<std::size_t>(config_.scan_points)));
+  scans_.push_back(evenly(input.points_W, static_cast<std::size_t>(config_.scan_points)));
   surface_.add(scans_.back(), input.T_W_C.translation(), input.time, normal_at);
   while (static_cast<int>(scans_.size()) > config_.scans) scans_.pop_front();
   std::vector<Vector3f> fresh_W;

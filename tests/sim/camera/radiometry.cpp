@@ -6,30 +6,15 @@
 #include <opencv2/core.hpp>
 
 #include "pllit/sim/camera/thermal_camera.hpp"
+#include "sim/camera/faultless_camera.hpp"
 #include "sim/camera/test_place.hpp"
 
 namespace pllit {
 namespace {
 
-/// Counts are linear in radiance; no noise, pattern, shutter, blur or vignetting.
-ThermalCameraModel faultless_camera() {
-  ThermalCameraModel model;
-  model.camera = small_camera();
-  model.blur_sigma_px = model.vignetting = model.netd_K = 0.0;
-  model.counts_per_K = 150.0;
-  model.fixed_pattern = {.column_walk = 0.0,
-                         .pixel_walk = 0.0,
-                         .whole_walk = 0.0,
-                         .column_left = 0.0,
-                         .pixel_left = 0.0,
-                         .whole_left = 0.0};
-  model.shutter = {.least_interval_s = 1e6, .most_interval_s = 1e6, .least_freeze_s = 0.0, .most_freeze_s = 0.0};
-  return model;
-}
-
 /// Apparent temperature in the middle of the image, K, by the counts' definition and the simulator's own band.
 double apparent_ahead_K(const Place& place) {
-  const ThermalCameraModel model = faultless_camera();
+  const ThermalCameraModel model = faultless_camera(150.0);
   Arena arena(1);
   RayCaster caster(place, 60.0);
   caster.move_to(Vector3d::Zero(), 0.0);

@@ -8,6 +8,7 @@
 
 #include "pllit/sim/camera/camera_presets.hpp"
 #include "pllit/sim/camera/pixel_truth.hpp"
+#include "sim/camera/faultless_camera.hpp"
 #include "sim/camera/test_place.hpp"
 
 namespace pllit {
@@ -15,22 +16,9 @@ namespace {
 
 const CameraPath kAtRest = [](Time) { return looking_along_y(); };
 
-/// No noise, no pattern, no shutter, no blur.
 ThermalCameraModel ideal_camera() {
-  ThermalCameraModel model;
-  model.camera = small_camera();
+  ThermalCameraModel model = faultless_camera(200.0);
   model.samples = 16;
-  model.blur_sigma_px = 0.0;
-  model.vignetting = 0.0;
-  model.counts_per_K = 200.0;
-  model.netd_K = 0.0;
-  model.fixed_pattern = {.column_walk = 0.0,
-                         .pixel_walk = 0.0,
-                         .whole_walk = 0.0,
-                         .column_left = 0.0,
-                         .pixel_left = 0.0,
-                         .whole_left = 0.0};
-  model.shutter = {.least_interval_s = 1e6, .most_interval_s = 1e6, .least_freeze_s = 0.0, .most_freeze_s = 0.0};
   return model;
 }
 

@@ -17,6 +17,9 @@ struct FixedPatternModel {
   double column_left = 0.008, pixel_left = 0.015, whole_left = 0.15;  ///< K, drawn anew at each event
 };
 
+inline constexpr FixedPatternModel kNoFixedPattern{
+    .column_walk = 0.0, .pixel_walk = 0.0, .whole_walk = 0.0, .column_left = 0.0, .pixel_left = 0.0, .whole_left = 0.0};
+
 /// Offsets of the pixels, in K.
 class FixedPattern {
  public:
