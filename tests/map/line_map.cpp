@@ -42,8 +42,8 @@ TEST(LineMap, TakesALineThatWasSeenOftenEnough) {
   }
   const auto line = map.line_of(*track);
   ASSERT_TRUE(line);
-  EXPECT_LT(line->line_W.distance_m(post_a), 0.02);
-  EXPECT_LT(line->line_W.distance_m(post_b), 0.02);
+  EXPECT_LT(line->axis.distance_m(post_a), 0.02);
+  EXPECT_LT(line->axis.distance_m(post_b), 0.02);
   EXPECT_EQ(map.lines().size(), 1);
   EXPECT_EQ(line->sightings, 0);  // of the line as one of the map
   map.observe(track, sighting_of(post_a, post_b, camera_at(0.6), random));
@@ -61,7 +61,7 @@ TEST(LineMap, IsSurerOfALineTheMoreItSeesOfItUntilItIsSettled) {
   }
   ASSERT_GT(history.size(), 20);
   EXPECT_LT(history[5].covariance_m2.trace(), history[0].covariance_m2.trace());
-  EXPECT_EQ(history[6].line_W.moment, history.back().line_W.moment);
+  EXPECT_EQ(history[6].axis.moment, history.back().axis.moment);
 }
 
 TEST(LineMap, MergesTracksOfOneEdge) {
@@ -81,7 +81,7 @@ TEST(LineMap, MergesTracksOfOneEdge) {
   EXPECT_EQ(map.line_of(*lower)->id, map.line_of(*upper)->id);
   EXPECT_NE(map.line_of(*lower)->id, map.line_of(*other)->id);
   EXPECT_GT(2.0 * map.line_of(*lower)->half_length_m, 0.9);
-  EXPECT_LT(map.line_of(*lower)->line_W.distance_m(post_a), 0.03);
+  EXPECT_LT(map.line_of(*lower)->axis.distance_m(post_a), 0.03);
 }
 
 TEST(LineMap, ForgetsLostTracksAndLinesThatTheRigLeftBehind) {
@@ -155,9 +155,9 @@ TEST(LineMap, PutsALineAtAnOccludingEdgeWhereItIs) {
   }
   const auto line = map.line_of(*track);
   ASSERT_TRUE(line);
-  EXPECT_LT(line->line_W.distance_m(a_W), 0.015);
-  EXPECT_LT(line->line_W.distance_m(b_W), 0.015);
-  EXPECT_LT(line->line_W.distance_m(0.5 * (a_W + b_W)), 0.010);
+  EXPECT_LT(line->axis.distance_m(a_W), 0.015);
+  EXPECT_LT(line->axis.distance_m(b_W), 0.015);
+  EXPECT_LT(line->axis.distance_m(0.5 * (a_W + b_W)), 0.010);
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ TEST(LineTracks, FollowALineFromKeyframeToKeyframeUntilItIsOneOfTheMap) {
   Random random(91);
   LineTracks lines({.min_sightings = 4});
   std::vector<bool> swapped;  // of the keyframes
+  std::vector<Keyframe> keyframes;
   for (int image = 0; image < 8; ++image) {
     const double x = 0.1 * image;
     const bool swap = image % 3 == 1;
@@ -53,20 +54,23 @@ TEST(LineTracks, FollowALineFromKeyframeToKeyframeUntilItIsOneOfTheMap) {
       for (int line = 0; line < 2; ++line)
         tracks.lines.push_back({.keyframe = k, .reference = swapped[k] == swap ? line : 1 - line, .current = line});
     const Features now = features_at(x, swap);
-    const auto observed = lines.observed(now, tracks);
+    const auto observed = lines.observed(now, tracks, keyframes);
     EXPECT_EQ(observed.size(), image < 4 ? 0 : 2) << image;
     for (const LineObservation& line : observed) {
       const bool right_one = line.start_px == now.lines[swap ? 1 : 0].start_px.cast<double>();
-      EXPECT_LT(line.line.line_W.distance_m(right_one ? post_a : other_a), 0.02);
+      EXPECT_EQ(line.keyframe, 0);  // every keyframe saw both
+      EXPECT_LT((keyframes[0].T_W_C * line.line_K.axis).distance_m(right_one ? post_a : other_a), 0.02);
     }
     const DepthImage depths(wall(random), camera_at(x).inverse(), test::thermal_camera(), {});
     lines.add(now, tracks, depths, camera_at(x), test::thermal_camera());
     if (image % 2 == 0) {
       lines.keep();
       swapped.push_back(swap);
+      keyframes.push_back({.T_W_C = camera_at(x)});
       if (swapped.size() > 2) {
         lines.drop(0);
         swapped.erase(swapped.begin());
+        keyframes.erase(keyframes.begin());
       }
     }
   }

@@ -44,12 +44,12 @@ inline bool in_image(const Eigen::Vector2d& px, const Camera& camera) {
 /// The landmark of a segment whose ends are known to sigma_m across it.
 inline LineLandmark landmark_between(const Vector3d& a_W, const Vector3d& b_W, double sigma_m) {
   LineLandmark line;
-  line.line_W = Line3::through(a_W, b_W - a_W);
-  line.centroid_W = 0.5 * (a_W + b_W);
+  line.axis = Line3::through(a_W, b_W - a_W);
+  line.centroid = 0.5 * (a_W + b_W);
   line.half_length_m = 0.5 * (b_W - a_W).norm();
-  const Vector3d& d = line.line_W.direction;
-  line.u_W = d.unitOrthogonal();
-  line.v_W = d.cross(line.u_W);
+  const Vector3d& d = line.axis.direction;
+  line.u = d.unitOrthogonal();
+  line.v = d.cross(line.u);
   line.covariance_m2 = sigma_m * sigma_m * Eigen::Matrix4d::Identity();
   return line;
 }

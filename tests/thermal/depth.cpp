@@ -245,6 +245,8 @@ TEST(PointsAlong, ALineOnAPanelsEdgeLieOnThatEdge) {
   Vector3d mean = Vector3d::Zero();
   for (const EdgePoint& point : along) {
     EXPECT_NEAR(point.sigma_across_m, point.p_C.norm() / camera.fx, 1e-3);
+    EXPECT_NEAR(std::abs(point.slide_C_m.x()), 3.0 / camera.fx, 1e-3) << "the panel faces the camera";
+    EXPECT_NEAR(point.slide_C_m.z(), 0.0, 3e-3);
     mean += point.p_C / static_cast<double>(along.size());
   }
   EXPECT_NEAR(mean.x(), 0.5, 0.01);

@@ -47,6 +47,10 @@ PointObservation random_point(Random& random, const Scene& scene) {
   return point;
 }
 
+SE3 camera_from_keyframe(const Scene& scene) {
+  return (scene.T_W_I * scene.rig.T_I_C).inverse() * (scene.T_W_I_keyframe * scene.rig.T_I_C);
+}
+
 /// A line before the camera, and a segment a few pixels from where it is seen.
 LineObservation random_line(Random& random, const Scene& scene) {
   const SE3 T_W_C = scene.T_W_I * scene.rig.T_I_C;
@@ -55,7 +59,8 @@ LineObservation random_line(Random& random, const Scene& scene) {
   const auto near = [&](const Vector3d& p_W) {
     return Vector2d(*camera.project(T_W_C.inverse().act(p_W)) + Vector2d(random.normal(3.0), random.normal(3.0)));
   };
-  return {.line = test::landmark_between(a_W, b_W, 0.02), .start_px = near(a_W), .end_px = near(b_W)};
+  const SE3 T_K_W = (scene.T_W_I_keyframe * scene.rig.T_I_C).inverse();
+  return {.line_K = T_K_W * test::landmark_between(a_W, b_W, 0.02), .start_px = near(a_W), .end_px = near(b_W)};
 }
 
 TEST(PointResidual, DerivativesToBothPosesMatchCentralDifferences) {
@@ -101,12 +106,12 @@ TEST(LineResidual, DerivativeToTheCamerasPoseOnTheRigMatchesCentralDifferences) 
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const LineObservation line = random_line(random, scene);
-      const auto at = line_residual(scene.T_W_I, line, scene.rig);
+      const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
       if (!at) continue;
       const Matrix2x6 expected = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
         Rig rig = scene.rig;
         rig.T_I_C = moved(rig.T_I_C, d);
-        return line_residual(scene.T_W_I, line, rig)->residual.r_px;
+        return line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, rig)->residual.r_px;
       });
       EXPECT_LT((at->residual.J_camera - expected).norm(), 1e-4 * expected.norm() + 1e-6);
       ++checked;
@@ -151,17 +156,22 @@ TEST(PointResidual, IsNothingBehindTheCamera) {
   EXPECT_FALSE(point_residual(scene.T_W_I_keyframe, scene.T_W_I_keyframe, point, scene.rig));
 }
 
-TEST(LineResidual, DerivativesToThePoseMatchCentralDifferences) {
+TEST(LineResidual, DerivativesToBothPosesMatchCentralDifferences) {
   Random random(15);
   for (const Camera& camera : {test::thermal_camera(), test::fisheye_camera()})
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const LineObservation line = random_line(random, scene);
-      const auto at = line_residual(scene.T_W_I, line, scene.rig);
+      const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
       ASSERT_TRUE(at);
-      const Matrix2x6 now = test::numerical_jacobian<2, 6>(
-          [&](const Vector6& d) { return line_residual(moved(scene.T_W_I, d), line, scene.rig)->residual.r_px; });
+      const Matrix2x6 now = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
+        return line_residual(moved(scene.T_W_I, d), scene.T_W_I_keyframe, line, scene.rig)->residual.r_px;
+      });
+      const Matrix2x6 keyframe = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
+        return line_residual(scene.T_W_I, moved(scene.T_W_I_keyframe, d), line, scene.rig)->residual.r_px;
+      });
       EXPECT_LT((at->residual.J_now - now).norm(), 1e-4 * now.norm());
+      EXPECT_LT((at->residual.J_keyframe - keyframe).norm(), 1e-4 * keyframe.norm());
     }
 }
 
@@ -170,20 +180,35 @@ TEST(LineResidual, DerivativesToTheLineMatchCentralDifferences) {
   for (int i = 0; i < 50; ++i) {
     const Scene scene = random_scene(random, test::thermal_camera());
     const LineObservation line = random_line(random, scene);
-    const auto at = line_residual(scene.T_W_I, line, scene.rig);
+    const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
     ASSERT_TRUE(at);
-    const LineLandmark& map = line.line;
+    const LineLandmark& map = line.line_K;
     const Eigen::Matrix<double, 2, 4> slope = test::numerical_jacobian<2, 4>([&](const Vector4d& shifts) {
-      const Vector3d half = map.half_length_m * map.line_W.direction;
-      const Vector3d a_W = map.centroid_W - half + shifts[0] * map.u_W + shifts[1] * map.v_W;
-      const Vector3d b_W = map.centroid_W + half + shifts[2] * map.u_W + shifts[3] * map.v_W;
+      const Vector3d half = map.half_length_m * map.axis.direction;
+      const Vector3d a_K = map.centroid - half + shifts[0] * map.u + shifts[1] * map.v;
+      const Vector3d b_K = map.centroid + half + shifts[2] * map.u + shifts[3] * map.v;
       LineObservation other = line;
-      other.line = test::landmark_between(a_W, b_W, 0.02);
-      return line_residual(scene.T_W_I, other, scene.rig)->residual.r_px;
+      other.line_K = test::landmark_between(a_K, b_K, 0.02);
+      return line_residual(scene.T_W_I, scene.T_W_I_keyframe, other, scene.rig)->residual.r_px;
     });
     EXPECT_LT((at->J_line - slope).norm(), 1e-4 * slope.norm());
     EXPECT_LT((at->residual.model_px2 - at->J_line * map.covariance_m2 * at->J_line.transpose()).norm(), 1e-9);
   }
+}
+
+TEST(LineResidual, SaysNotMuchMoreInManyImagesThanTheLinesOwnDoubtAllows) {
+  Random random(23);
+  const Scene scene = random_scene(random, test::thermal_camera());
+  LineObservation line = random_line(random, scene);
+  double information = 0.0;
+  for (int image = 1; image <= 200; ++image) {
+    line.line_K.sightings = image;
+    information +=
+        line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig)->residual.model_px2.inverse()(0, 0);
+  }
+  line.line_K.sightings = 1;
+  const auto once = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
+  EXPECT_LT(information, 1.65 * once->residual.model_px2.inverse()(0, 0));
 }
 
 TEST(LineResidual, IsThePapersFormulaWithoutDistortion) {
@@ -194,12 +219,12 @@ TEST(LineResidual, IsThePapersFormulaWithoutDistortion) {
   for (int i = 0; i < 20; ++i) {
     const Scene scene = random_scene(random, camera);
     const LineObservation line = random_line(random, scene);
-    const Line3 line_C = (scene.T_W_I * scene.rig.T_I_C).inverse() * line.line.line_W;
+    const Line3 line_C = camera_from_keyframe(scene) * line.line_K.axis;
     const auto distance_px = [&](const Vector2d& px) {
       const Vector3d s((px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy, 1.0);
       return camera.fx * s.dot(line_C.moment) / line_C.moment.head<2>().norm();
     };
-    const auto at = line_residual(scene.T_W_I, line, scene.rig);
+    const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
     EXPECT_NEAR(at->residual.r_px[0], distance_px(line.start_px), 1e-6);
     EXPECT_NEAR(at->residual.r_px[1], distance_px(line.end_px), 1e-6);
   }
@@ -211,13 +236,14 @@ TEST(LineResidual, IsTheDistanceInTheDistortedImage) {
     for (int i = 0; i < 20; ++i) {
       const Scene scene = random_scene(random, camera);
       LineObservation line = random_line(random, scene);
-      const SE3 T_C_W = (scene.T_W_I * scene.rig.T_I_C).inverse();
+      const SE3 T_C_K = camera_from_keyframe(scene);
       // The line's image near its middle by two points a little apart, and a pixel 1.5 px beside it.
-      const Vector3d &p_W = line.line.centroid_W, &d = line.line.line_W.direction;
-      const Vector2d middle = *camera.project(T_C_W.act(p_W)), next = *camera.project(T_C_W.act(p_W + 1e-3 * d));
+      const Vector3d &p_K = line.line_K.centroid, &d = line.line_K.axis.direction;
+      const Vector2d middle = *camera.project(T_C_K.act(p_K)), next = *camera.project(T_C_K.act(p_K + 1e-3 * d));
       const Vector2d along = (next - middle).normalized();
       line.start_px = middle + 1.5 * Vector2d(-along.y(), along.x());
-      EXPECT_NEAR(std::abs(line_residual(scene.T_W_I, line, scene.rig)->residual.r_px[0]), 1.5, 0.02);
+      EXPECT_NEAR(std::abs(line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig)->residual.r_px[0]), 1.5,
+                  0.02);
     }
 }
 
@@ -225,9 +251,9 @@ TEST(LineResidual, IsNothingOfALineThroughTheCamera) {
   Random random(19);
   const Scene scene = random_scene(random, test::thermal_camera());
   LineObservation line = random_line(random, scene);
-  const Vector3d camera_W = (scene.T_W_I * scene.rig.T_I_C).translation();
-  line.line = test::landmark_between(camera_W, camera_W + Vector3d(1.0, 2.0, 3.0), 0.02);
-  EXPECT_FALSE(line_residual(scene.T_W_I, line, scene.rig));
+  const Vector3d camera_K = camera_from_keyframe(scene).inverse().translation();
+  line.line_K = test::landmark_between(camera_K, camera_K + Vector3d(1.0, 2.0, 3.0), 0.02);
+  EXPECT_FALSE(line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig));
 }
 
 }  // namespace

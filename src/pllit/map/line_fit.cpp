@@ -19,7 +19,7 @@ using Eigen::Vector4d;
 using Matrix3x2 = Eigen::Matrix<double, 3, 2>;
 
 struct WorldPoint {
-  Vector3d p_W, ray_W;
+  Vector3d p_W, ray_W, slide_W;
   double ray_m2, across_m2;  ///< variances
   std::size_t sighting;
   bool on_line = true;
@@ -32,6 +32,7 @@ std::vector<WorldPoint> in_world(std::span<const LineSighting> sightings) {
       const Matrix3d R_W_C = sightings[s].T_W_C.rotation();
       points.push_back({.p_W = R_W_C * point.p_C + sightings[s].T_W_C.translation(),
                         .ray_W = R_W_C * point.p_C.normalized(),
+                        .slide_W = R_W_C * point.slide_C_m,
                         .ray_m2 = point.sigma_ray_m * point.sigma_ray_m,
                         .across_m2 = point.sigma_across_m * point.sigma_across_m,
                         .sighting = s});
@@ -47,7 +48,7 @@ Matrix3x2 across(const Vector3d& d) {
   return axes;
 }
 
-/// Covariance of a point across a line.
+/// Covariance of a point across a line, but for what it shares with the others of its sighting.
 Matrix2d noise_across(const WorldPoint& point, const Matrix3x2& axes, double common_m2) {
   const Vector2d ray = axes.transpose() * point.ray_W;
   return (point.across_m2 + common_m2) * Matrix2d::Identity() +
@@ -56,8 +57,8 @@ Matrix2d noise_across(const WorldPoint& point, const Matrix3x2& axes, double com
 
 /// Squared distance of a point from a line in its own standard deviations.
 double squared_distance(const WorldPoint& point, const Vector3d& on_line_W, const Matrix3x2& axes, double common_m2) {
-  const Vector2d off = axes.transpose() * (point.p_W - on_line_W);
-  return off.dot(noise_across(point, axes, common_m2).inverse() * off);
+  const Vector2d off = axes.transpose() * (point.p_W - on_line_W), slide = axes.transpose() * point.slide_W;
+  return off.dot((noise_across(point, axes, common_m2) + slide * slide.transpose()).inverse() * off);
 }
 
 int mark_inliers(std::vector<WorldPoint>& points, const Vector3d& on_line_W, const Vector3d& d,
@@ -90,24 +91,25 @@ int agree_on_line(std::vector<WorldPoint>& points, const LineFitConfig& config) 
   return best > 0 ? mark_inliers(points, best_line.first, best_line.second, config) : 0;
 }
 
-/// Centroid, direction and variances of the inliers by principal components.
+/// Centroid, direction and variances of the inliers by principal components, each by its own noise.
 struct Axis {
   Vector3d centre_W, direction, variances_m2;
 };
 Axis principal_axis(std::span<const WorldPoint> points) {
   Axis axis{Vector3d::Zero(), Vector3d::UnitX(), Vector3d::Zero()};
   Matrix3d squares = Matrix3d::Zero();
-  double count = 0.0;
+  double weights = 0.0;
   const Vector3d origin = points.front().p_W;
   for (const WorldPoint& point : points) {
     if (!point.on_line) continue;
-    axis.centre_W += point.p_W - origin;
-    squares += (point.p_W - origin) * (point.p_W - origin).transpose();
-    ++count;
+    const double weight = 1.0 / (point.ray_m2 + 2.0 * point.across_m2 + point.slide_W.squaredNorm());
+    axis.centre_W += weight * (point.p_W - origin);
+    squares += weight * (point.p_W - origin) * (point.p_W - origin).transpose();
+    weights += weight;
   }
-  if (count == 0.0) return axis;
-  axis.centre_W /= count;
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(squares / count - axis.centre_W * axis.centre_W.transpose());
+  if (weights == 0.0) return axis;
+  axis.centre_W /= weights;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(squares / weights - axis.centre_W * axis.centre_W.transpose());
   axis.centre_W += origin;
   axis.direction = eigen.eigenvectors().col(2);
   axis.variances_m2 = eigen.eigenvalues().cwiseMax(0.0);
@@ -124,6 +126,29 @@ std::pair<double, double> extent(std::span<const WorldPoint> points, const Axis&
   return {along[cut], along[along.size() - 1 - cut]};
 }
 
+/// Where along the line, from 0 at its first end to 1 at the other, and how far a point slides across it.
+struct Slide {
+  double share;
+  Vector2d across_m;
+};
+
+/// Covariance of the four shifts as one sighting shows them, its points' own noise aside: the two ends of the observed
+/// segment err in the image, which moves them over their surface, and what they are off there reaches the line's ends.
+Matrix4d shared_covariance(const Slide& first, const Slide& last, double common_m2) {
+  const double apart = std::max(last.share - first.share, 1e-2);
+  Eigen::Matrix<double, 4, 2> slides;
+  slides << first.across_m * last.share / apart, -last.across_m * first.share / apart,
+      first.across_m * (last.share - 1.0) / apart, last.across_m * (1.0 - first.share) / apart;
+  return common_m2 * Matrix4d::Identity() + slides * slides.transpose();
+}
+
+/// What one sighting's points say about the four shifts.
+struct Sums {
+  Matrix4d H = 1e-2 * Matrix4d::Identity();  // far less than a point tells
+  Vector4d b = Vector4d::Zero();
+  std::optional<Slide> first, last;
+};
+
 /// The weighted step of both ends, with its covariance.
 struct Step {
   Vector4d shifts;
@@ -132,28 +157,32 @@ struct Step {
 Step weighted_step(std::span<const WorldPoint> points, const LineLandmark& line, std::size_t sightings,
                    const LineFitConfig& config) {
   Matrix3x2 axes;
-  axes << line.u_W, line.v_W;
-  std::vector<Matrix4d> H(sightings, 1e-2 * Matrix4d::Identity());  // far less than a point tells
-  std::vector<Vector4d> b(sightings, Vector4d::Zero());
+  axes << line.u, line.v;
+  std::vector<Sums> seen(sightings);
   for (const WorldPoint& point : points) {
     if (!point.on_line) continue;
-    const Vector3d from_centre = point.p_W - line.centroid_W;
-    const double share = 0.5 + 0.5 * from_centre.dot(line.line_W.direction) / line.half_length_m;
+    const Vector3d from_centre = point.p_W - line.centroid;
+    const double share = 0.5 + 0.5 * from_centre.dot(line.axis.direction) / line.half_length_m;
     Eigen::Matrix<double, 2, 4> J;
     J << (1.0 - share) * Matrix2d::Identity(), share * Matrix2d::Identity();
     const Eigen::Matrix<double, 4, 2> JtW = J.transpose() * noise_across(point, axes, 0.0).inverse();
-    H[point.sighting] += JtW * J;
-    b[point.sighting] += JtW * (axes.transpose() * from_centre);
+    Sums& sums = seen[point.sighting];
+    sums.H += JtW * J;
+    sums.b += JtW * (axes.transpose() * from_centre);
+    const Slide slide{share, axes.transpose() * point.slide_W};
+    if (!sums.first || share < sums.first->share) sums.first = slide;
+    if (!sums.last || share > sums.last->share) sums.last = slide;
   }
   // Each sighting as one measurement of the four shifts, its common error on top.
-  const Matrix4d common = config.common_sigma_m * config.common_sigma_m * Matrix4d::Identity();
   Matrix4d information = Matrix4d::Zero();
   Vector4d pull = Vector4d::Zero();
-  for (std::size_t s = 0; s < sightings; ++s) {
-    const Matrix4d seen = H[s].inverse();
-    const Matrix4d weight = (seen + common).inverse();
+  for (const Sums& sums : seen) {
+    if (!sums.first) continue;
+    const Matrix4d own = sums.H.inverse();
+    const double common_m2 = config.common_sigma_m * config.common_sigma_m;
+    const Matrix4d weight = (own + shared_covariance(*sums.first, *sums.last, common_m2)).inverse();
     information += weight;
-    pull += weight * (seen * b[s]);
+    pull += weight * (own * sums.b);
   }
   const Matrix4d covariance = information.inverse();
   return {covariance * pull, 0.5 * (covariance + covariance.transpose())};
@@ -161,12 +190,12 @@ Step weighted_step(std::span<const WorldPoint> points, const LineLandmark& line,
 
 LineLandmark landmark(const Vector3d& a_W, const Vector3d& b_W) {
   LineLandmark line;
-  line.line_W = Line3::through(a_W, b_W - a_W);
-  line.centroid_W = 0.5 * (a_W + b_W);
+  line.axis = Line3::through(a_W, b_W - a_W);
+  line.centroid = 0.5 * (a_W + b_W);
   line.half_length_m = 0.5 * (b_W - a_W).norm();
-  const Matrix3x2 axes = across(line.line_W.direction);
-  line.u_W = axes.col(0);
-  line.v_W = axes.col(1);
+  const Matrix3x2 axes = across(line.axis.direction);
+  line.u = axes.col(0);
+  line.v = axes.col(1);
   return line;
 }
 
@@ -193,11 +222,11 @@ std::optional<LineLandmark> fit_line(std::span<const LineSighting> sightings, co
   LineLandmark line = landmark(axis.centre_W + from_m * axis.direction, axis.centre_W + to_m * axis.direction);
   for (int round = 0; round < 2; ++round) {
     const Step step = weighted_step(points, line, sightings.size(), config);
-    const Vector3d half = line.half_length_m * line.line_W.direction;
-    const Vector3d a_W = line.centroid_W - half + step.shifts[0] * line.u_W + step.shifts[1] * line.v_W;
-    const Vector3d b_W = line.centroid_W + half + step.shifts[2] * line.u_W + step.shifts[3] * line.v_W;
+    const Vector3d half = line.half_length_m * line.axis.direction;
+    const Vector3d a_W = line.centroid - half + step.shifts[0] * line.u + step.shifts[1] * line.v;
+    const Vector3d b_W = line.centroid + half + step.shifts[2] * line.u + step.shifts[3] * line.v;
     line = landmark(a_W, b_W);
-    if (mark_inliers(points, line.centroid_W, line.line_W.direction, config) < least_inliers) return std::nullopt;
+    if (mark_inliers(points, line.centroid, line.axis.direction, config) < least_inliers) return std::nullopt;
   }
   line.covariance_m2 = weighted_step(points, line, sightings.size(), config).covariance;
   return line;
@@ -206,7 +235,7 @@ std::optional<LineLandmark> fit_line(std::span<const LineSighting> sightings, co
 LineLandmark with_ends(const LineLandmark& line, double from_m, double to_m) {
   assert(from_m < to_m && line.half_length_m > 0.0);
   LineLandmark result = line;
-  result.centroid_W += 0.5 * (from_m + to_m) * line.line_W.direction;
+  result.centroid += 0.5 * (from_m + to_m) * line.axis.direction;
   result.half_length_m = 0.5 * (to_m - from_m);
   Matrix4d J_new_old;
   for (int end = 0; end < 2; ++end) {

@@ -15,8 +15,8 @@ struct Along {
   double from_m, to_m;
 };
 Along along(const LineLandmark& line, const LineLandmark& other) {
-  const double middle = (other.centroid_W - line.centroid_W).dot(line.line_W.direction);
-  const double half = other.half_length_m * std::abs(other.line_W.direction.dot(line.line_W.direction));
+  const double middle = (other.centroid - line.centroid).dot(line.axis.direction);
+  const double half = other.half_length_m * std::abs(other.axis.direction.dot(line.axis.direction));
   return {middle - half, middle + half};
 }
 
@@ -35,7 +35,7 @@ Stretch in_image(const LineLandmark& line, const SE3& T_C_W, const Camera& camer
   Stretch longest, current;
   for (int i = 0; i <= steps; ++i) {
     const double at_m = line.half_length_m * (2.0 * i / steps - 1.0);
-    const auto px = camera.project(T_C_W.act(line.centroid_W + at_m * line.line_W.direction));
+    const auto px = camera.project(T_C_W.act(line.centroid + at_m * line.axis.direction));
     if (!px || !inside(*px, camera)) {
       current = {};
       continue;
@@ -110,12 +110,12 @@ void LineMap::promote(Track& track) {
 std::optional<std::uint32_t> LineMap::same_line(const LineLandmark& line) const {
   const double least_cos = std::cos(config_.merge_deg * M_PI / 180.0);
   for (const auto& [id, other] : lines_) {
-    if (std::abs(line.line_W.direction.dot(other.line_W.direction)) < least_cos) continue;
+    if (std::abs(line.axis.direction.dot(other.axis.direction)) < least_cos) continue;
     const Along covered = along(other, line);
     const double gap_m = std::max({0.0, covered.from_m - other.half_length_m, -other.half_length_m - covered.to_m});
-    const Vector3d half = line.half_length_m * line.line_W.direction;
-    const bool passes = other.line_W.distance_m(line.centroid_W - half) < config_.merge_m &&
-                        other.line_W.distance_m(line.centroid_W + half) < config_.merge_m;
+    const Vector3d half = line.half_length_m * line.axis.direction;
+    const bool passes = other.axis.distance_m(line.centroid - half) < config_.merge_m &&
+                        other.axis.distance_m(line.centroid + half) < config_.merge_m;
     if (passes && gap_m < config_.fit.min_length_m) return id;
   }
   return std::nullopt;
@@ -124,7 +124,7 @@ std::optional<std::uint32_t> LineMap::same_line(const LineLandmark& line) const 
 void LineMap::end_image(const Vector3d& p_W) {
   ++image_;
   std::erase_if(lines_, [&](const auto& entry) {
-    return (entry.second.centroid_W - p_W).norm() - entry.second.half_length_m > config_.keep_m;
+    return (entry.second.centroid - p_W).norm() - entry.second.half_length_m > config_.keep_m;
   });
   std::erase_if(tracks_, [&](const auto& entry) { return image_ - entry.second.last_image > config_.patience; });
 }

@@ -1,5 +1,6 @@
 #include "pllit/slam/line_tracks.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace pllit {
@@ -19,15 +20,25 @@ LineTracks::PerLine LineTracks::tracks_of(const Features& now, const Tracks& tra
   return ids;
 }
 
-std::vector<LineObservation> LineTracks::observed(const Features& now, const Tracks& tracks) const {
+std::size_t LineTracks::oldest_with(TrackId track) const {
+  const auto has = [&](const PerLine& ids) { return std::ranges::find(ids, std::optional(track)) != ids.end(); };
+  return static_cast<std::size_t>(std::ranges::find_if(keyframes_, has) - keyframes_.begin());
+}
+
+std::vector<LineObservation> LineTracks::observed(const Features& now, const Tracks& tracks,
+                                                  std::span<const Keyframe> keyframes) const {
+  assert(keyframes.size() == keyframes_.size());
   std::vector<LineObservation> observations;
   const PerLine ids = tracks_of(now, tracks);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (!ids[i]) continue;
-    if (const auto line = map_.line_of(*ids[i]))
-      observations.push_back({.line = *line,
-                              .start_px = now.lines[i].start_px.cast<double>(),
-                              .end_px = now.lines[i].end_px.cast<double>()});
+    const auto line_W = map_.line_of(*ids[i]);
+    if (!line_W) continue;
+    const std::size_t keyframe = oldest_with(*ids[i]);
+    observations.push_back({.keyframe = keyframe,
+                            .line_K = keyframes[keyframe].T_W_C.inverse() * *line_W,
+                            .start_px = now.lines[i].start_px.cast<double>(),
+                            .end_px = now.lines[i].end_px.cast<double>()});
   }
   return observations;
 }

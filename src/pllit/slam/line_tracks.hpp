@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pllit/map/line_map.hpp"
@@ -16,8 +17,10 @@ class LineTracks {
  public:
   explicit LineTracks(const LineMapConfig& config) : map_(config) {}
 
-  /// The image's lines that have become lines of the map.
-  std::vector<LineObservation> observed(const Features& now, const Tracks& tracks) const;
+  /// The image's lines that have become lines of the map. Each goes with the oldest keyframe of the window that saw it:
+  /// it was built from about there, with that pose's error. Keyframe::T_W_C is all that is read of them.
+  std::vector<LineObservation> observed(const Features& now, const Tracks& tracks,
+                                        std::span<const Keyframe> keyframes) const;
   /// Sightings of the image's lines, by the pose that the filter left it.
   void add(const Features& now, const Tracks& tracks, const DepthImage& depths, const SE3& T_W_C, const Camera& camera);
   /// The image of the last add() is the window's newest keyframe.
@@ -32,6 +35,8 @@ class LineTracks {
  private:
   using PerLine = std::vector<std::optional<TrackId>>;
   PerLine tracks_of(const Features& now, const Tracks& tracks) const;
+
+  std::size_t oldest_with(TrackId track) const;
 
   LineMap map_;
   std::vector<PerLine> keyframes_;  ///< of the window, oldest first

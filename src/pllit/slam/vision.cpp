@@ -118,7 +118,7 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prio
   facts.bias_grey = chain_.curve.bias;
   clock.charge(Stage::photometric);
 
-  const Estimate posterior = update(prior, open, observe(look->features, tracks), facts);
+  const Estimate posterior = update(prior, open, observe(look->features, tracks, prior.mean.T_W_I()), facts);
   extend_maps(std::move(*look), tracks, image.time, posterior);
   clock.charge(Stage::thermal);
   return posterior;
@@ -140,7 +140,7 @@ void Vision::extend_maps(Look look, const Tracks& tracks, Time time, const Estim
   keep(std::move(look), depths, time, posterior);
 }
 
-ImageObservations Vision::observe(const Features& features, const Tracks& tracks) const {
+ImageObservations Vision::observe(const Features& features, const Tracks& tracks, const SE3& T_W_I) const {
   ImageObservations observations;
   for (const PointMatch& match : tracks.points) {
     const Keyframe& keyframe = keyframes_[match.keyframe];
@@ -156,8 +156,10 @@ ImageObservations Vision::observe(const Features& features, const Tracks& tracks
          .line_px = match.line_px});
   }
   if (config_.residuals.lines) {
-    observations.lines = lines_.observed(features, tracks);
-    observations.points = off_lines(observations.points, observations.lines);
+    Rig rig = rig_;
+    rig.T_I_C = T_I_C();
+    observations.lines =
+        nearest_of_each(lines_.observed(features, tracks, keyframes_), T_W_I, std::span(clones_.poses).subspan(1), rig);
   }
   return observations;
 }

@@ -53,7 +53,7 @@ class Vision {
     Features features{};
   };
   Expected<Look> look(const CameraFrame& image) const;
-  ImageObservations observe(const Features& features, const Tracks& tracks) const;
+  ImageObservations observe(const Features& features, const Tracks& tracks, const SE3& T_W_I) const;
   DepthImage depths_at(const SE3& T_W_C) const;
   Estimate update(const Estimate& prior, const std::optional<StateDirections>& open,
                   const ImageObservations& observations, ImageFacts& facts);

@@ -203,13 +203,18 @@ std::vector<EdgePoint> points_along(const LineSegment& line, const DepthImage& d
   std::vector<EdgePoint> points;
   const int steps = std::max(1, static_cast<int>(line.length_px() / step_px));
   const double sigma_rad = line_sigma_px / (0.5 * (camera.fx + camera.fy));
+  const Vector2d along = (line.end_px - line.start_px).cast<double>().normalized();
+  const Vector2d aside_px = line_sigma_px * Vector2d(-along.y(), along.x());
   for (int i = 0; i <= steps; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(steps);
     const Vector2d px = (line.start_px + share * (line.end_px - line.start_px)).cast<double>();
-    if (const auto depth = depths.at(px))
-      points.push_back({.p_C = depth->range_m * camera.ray(px),
-                        .sigma_ray_m = depth->sigma_m,
-                        .sigma_across_m = sigma_rad * depth->range_m});
+    const auto depth = depths.at(px);
+    if (!depth) continue;
+    const Vector3d p_C = depth->range_m * camera.ray(px), beside = camera.ray(px + aside_px);
+    points.push_back({.p_C = p_C,
+                      .sigma_ray_m = depth->sigma_m,
+                      .sigma_across_m = sigma_rad * depth->range_m,
+                      .slide_C_m = p_C.dot(depth->normal_C) / beside.dot(depth->normal_C) * beside - p_C});
   }
   return points;
 }

@@ -20,7 +20,8 @@ struct PointObservation {
 
 /// A line of the map seen again.
 struct LineObservation {
-  LineLandmark line;
+  std::size_t keyframe = 0;          ///< index of a keyframe that saw it, among the poses that the filter keeps
+  LineLandmark line_K;               ///< in the camera frame of that keyframe
   Eigen::Vector2d start_px, end_px;  ///< of the segment in the image now, as seen (distorted)
 };
 

@@ -31,24 +31,34 @@ std::optional<EndPoint> undistorted(const Vector2d& pixel_px, const Camera& came
 /// The line of the paper's Pluecker coordinates seen from a pose: normal n_C of the plane through camera and line.
 struct InterpretationPlane {
   Vector3d n_C;
-  Matrix3x6 J_n_pose, J_n_camera;
+  Matrix3x6 J_n_pose, J_n_keyframe, J_n_camera;
   Eigen::Matrix<double, 3, 4> J_n_line;
 };
 
-InterpretationPlane interpretation_plane(const SE3& T_W_I, const LineLandmark& line, const SE3& T_I_C) {
+InterpretationPlane interpretation_plane(const SE3& T_W_I, const SE3& T_W_I_keyframe, const LineLandmark& line_K,
+                                         const SE3& T_I_C) {
+  const SE3 T_W_K = T_W_I_keyframe * T_I_C;
+  const LineLandmark line = T_W_K * line_K;
   const Matrix3d R_I_W = T_W_I.rotation().transpose(), R_C_I = T_I_C.rotation().transpose();
   const Matrix3d R_C_W = R_C_I * R_I_W;
-  const Vector3d& d = line.line_W.direction;
+  const Vector3d& d = line.axis.direction;
   const Vector3d camera_W = T_W_I.act(T_I_C.translation());
-  const Vector3d m = line.line_W.moment - camera_W.cross(d);  // moment about the camera
+  const Vector3d m = line.axis.moment - camera_W.cross(d);  // moment about the camera
   InterpretationPlane plane;
   plane.n_C = R_C_W * m;
   plane.J_n_pose << R_C_I * (skew(R_I_W * m) - skew(R_I_W * d) * skew(T_I_C.translation())), R_C_W * skew(d);
-  plane.J_n_camera << skew(plane.n_C), R_C_I * skew(R_I_W * d);
+  // The line turns with its keyframe about the one place, and with the camera that saw it there about the other.
+  const auto turned_about = [&](const Vector3d& p_W) -> Matrix3d {
+    return -R_C_W * (skew(line.axis.moment - p_W.cross(d)) + skew(p_W - camera_W) * skew(d));
+  };
+  const Matrix3d R_W_KI = T_W_I_keyframe.rotation(), shifted = -R_C_W * skew(d);
+  plane.J_n_keyframe << turned_about(T_W_I_keyframe.translation()) * R_W_KI, shifted;
+  plane.J_n_camera << skew(plane.n_C) + turned_about(T_W_K.translation()) * T_W_K.rotation(),
+      R_C_I * skew(R_I_W * d) + shifted * R_W_KI;
   // Shifts of both ends move the centre by their mean and turn the direction by their difference over the length.
-  const Vector3d from_camera = line.centroid_W - camera_W;
+  const Vector3d from_camera = line.centroid - camera_W;
   for (int i = 0; i < 4; ++i) {
-    const Vector3d shift = i % 2 == 0 ? line.u_W : line.v_W;
+    const Vector3d shift = i % 2 == 0 ? line.u : line.v;
     const double turn = (i < 2 ? -0.5 : 0.5) / line.half_length_m;
     plane.J_n_line.col(i) = R_C_W * (0.5 * shift.cross(d) + turn * from_camera.cross(shift));
   }
@@ -100,12 +110,13 @@ std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_k
   return residual;
 }
 
-std::optional<LineResidual> line_residual(const SE3& T_W_I, const LineObservation& observation, const Rig& rig) {
-  assert(rig.camera && observation.line.half_length_m > 0.0);
+std::optional<LineResidual> line_residual(const SE3& T_W_I, const SE3& T_W_I_keyframe,
+                                          const LineObservation& observation, const Rig& rig) {
+  assert(rig.camera && observation.line_K.half_length_m > 0.0);
   const auto start = undistorted(observation.start_px, *rig.camera);
   const auto end = undistorted(observation.end_px, *rig.camera);
   if (!start || !end) return std::nullopt;
-  const InterpretationPlane plane = interpretation_plane(T_W_I, observation.line, rig.T_I_C);
+  const InterpretationPlane plane = interpretation_plane(T_W_I, T_W_I_keyframe, observation.line_K, rig.T_I_C);
   constexpr double least_distance_m = 1e-3;  // the length of the moment: a camera on the line itself sees no plane
   const double distance_m = plane.n_C.norm(), sin_plane = plane.n_C.head<2>().norm() / distance_m;
   if (!(distance_m > least_distance_m) || !(sin_plane > 1e-6)) return std::nullopt;
@@ -115,15 +126,16 @@ std::optional<LineResidual> line_residual(const SE3& T_W_I, const LineObservatio
   for (int i = 0; i < 2; ++i) {
     line.residual.r_px[i] = distances[i].px;
     line.residual.J_now.row(i) = distances[i].J_px_n * plane.J_n_pose;
+    line.residual.J_keyframe.row(i) = distances[i].J_px_n * plane.J_n_keyframe;
     line.residual.J_camera.row(i) = distances[i].J_px_n * plane.J_n_camera;
     line.J_line.row(i) = distances[i].J_px_n * plane.J_n_line;
   }
   const Vector2d along = (observation.end_px - observation.start_px).normalized();
   line.sin_turn = std::abs(along.dot((distances[0].normal + distances[1].normal).normalized()));
-  // A line of the map errs the same way in every image that it is seen in: the more of them there are, the less each
-  // may say, so that together they never say more than the line's own doubt allows by much.
-  const double share = std::max(1, observation.line.sightings);
-  line.residual.model_px2 = share * line.J_line * observation.line.covariance_m2 * line.J_line.transpose();
+  // A line of the map errs the same way in every image that it is seen in. The k-th of them may say the k^2-th part of
+  // what the line's doubt allows, so that all of them together say no more than pi^2 / 6 times as much.
+  const double k = std::max(1, observation.line_K.sightings);
+  line.residual.model_px2 = k * k * line.J_line * observation.line_K.covariance_m2 * line.J_line.transpose();
   return line;
 }
 

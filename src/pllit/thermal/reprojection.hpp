@@ -15,7 +15,7 @@ using Matrix2x6 = Eigen::Matrix<double, 2, 6>;
 struct ImageResidual {
   Eigen::Vector2d r_px = Eigen::Vector2d::Zero();
   Matrix2x6 J_now = Matrix2x6::Zero();                  ///< to the pose now
-  Matrix2x6 J_keyframe = Matrix2x6::Zero();             ///< to the keyframe's pose; zero for lines
+  Matrix2x6 J_keyframe = Matrix2x6::Zero();             ///< to the keyframe's pose
   Matrix2x6 J_camera = Matrix2x6::Zero();               ///< to T_I_C, likewise
   Eigen::Matrix2d model_px2 = Eigen::Matrix2d::Zero();  ///< covariance that the point's depth or the line brings along
 };
@@ -37,6 +37,7 @@ struct LineResidual {
 /// lens's derivative at each of them. Without distortion it is the paper's s'l / sqrt(l1^2 + l2^2) times the focal
 /// length. Nothing where an end point's ray is 85 degrees or more off the axis, or the plane through camera and line is
 /// parallel to the image.
-std::optional<LineResidual> line_residual(const SE3& T_W_I, const LineObservation& observation, const Rig& rig);
+std::optional<LineResidual> line_residual(const SE3& T_W_I, const SE3& T_W_I_keyframe,
+                                          const LineObservation& observation, const Rig& rig);
 
 }  // namespace pllit

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <map>
 
 #include "pllit/thermal/reprojection.hpp"
 
@@ -50,8 +51,7 @@ class Sums {
     assert(search_.size() == 0 || search_.rows() == equations_.b.size());
   }
 
-  /// `keyframe`: its index, or nothing for residuals of the pose now alone.
-  void add(const ImageResidual& residual, double sigma_px, std::optional<std::size_t> keyframe) {
+  void add(const ImageResidual& residual, double sigma_px, std::size_t keyframe) {
     ++equations_.candidates;
     const Blocks blocks = blocks_of(residual, keyframe);
     const Matrix2d noise = sigma_px * sigma_px * Matrix2d::Identity() + residual.model_px2;
@@ -64,6 +64,7 @@ class Sums {
       return;
     }
     ++equations_.inliers;
+    points_worth_ += 0.5 * config_.point_sigma_px * config_.point_sigma_px * information.trace();
     const Loss loss = cauchy(squared, config_.loss);
     equations_.cost += loss.cost;
     equations_.squared += loss.weight * squared;
@@ -80,8 +81,8 @@ class Sums {
     JointEquations& sums = equations_;
     sums.expected = sums.inliers * mean_weighted_square(config_.loss);
     // Errors of calibration and timing are common to all of an image: together its points may claim only so much.
-    if (config_.max_information > 0.0 && sums.inliers > config_.max_information) {
-      const double share = config_.max_information / sums.inliers;
+    if (config_.max_information > 0.0 && points_worth_ > config_.max_information) {
+      const double share = config_.max_information / points_worth_;
       sums.H *= share;
       sums.b *= share;
       sums.cost *= share;
@@ -104,12 +105,12 @@ class Sums {
     auto end() const { return block.begin() + static_cast<std::ptrdiff_t>(count); }
   };
 
-  Blocks blocks_of(const ImageResidual& residual, std::optional<std::size_t> keyframe) const {
+  Blocks blocks_of(const ImageResidual& residual, std::size_t keyframe) const {
     const auto begin_of = [](std::size_t pose) { return ix::size + kPose * static_cast<Index>(pose); };
     Blocks blocks;
     blocks.block[blocks.count++] = {0, residual.J_now};
     if (camera_unknown_) blocks.block[blocks.count++] = {begin_of(0), residual.J_camera};
-    if (keyframe) blocks.block[blocks.count++] = {begin_of(*keyframe + (camera_unknown_ ? 1 : 0)), residual.J_keyframe};
+    blocks.block[blocks.count++] = {begin_of(keyframe + (camera_unknown_ ? 1 : 0)), residual.J_keyframe};
     return blocks;
   }
 
@@ -131,18 +132,10 @@ class Sums {
 
   bool camera_unknown_;
   JointEquations equations_;
+  double points_worth_ = 0.0;  ///< how many points of no other noise than the detector's say as much
   const VisualConfig& config_;
   const MatrixXd& search_;
 };
-
-/// Whether the point lies beside the segment, within the distance.
-bool beside(const Vector2d& point_px, const LineObservation& line, double distance_px) {
-  const Vector2d along = line.end_px - line.start_px, from_start = point_px - line.start_px;
-  const double length_px = std::max(along.norm(), 1e-9);
-  const double foot_px = from_start.dot(along) / length_px;
-  const double across_px = (from_start.x() * along.y() - from_start.y() * along.x()) / length_px;
-  return std::abs(across_px) <= distance_px && foot_px >= -distance_px && foot_px <= length_px + distance_px;
-}
 
 }  // namespace
 
@@ -160,14 +153,18 @@ std::vector<double> adaptive_weights(std::span<const PointObservation> points, c
   return weights;
 }
 
-std::vector<PointObservation> off_lines(std::span<const PointObservation> points,
-                                        std::span<const LineObservation> lines, double distance_px) {
-  std::vector<PointObservation> kept;
-  std::ranges::copy_if(points, std::back_inserter(kept), [&](const PointObservation& point) {
-    return point.line_px < 0.0 ||
-           std::ranges::none_of(
-               lines, [&](const LineObservation& line) { return beside(point.observed_px, line, distance_px); });
-  });
+std::vector<LineObservation> nearest_of_each(std::span<const LineObservation> lines, const SE3& T_W_I,
+                                             std::span<const SE3> T_W_I_keyframes, const Rig& rig) {
+  std::map<std::uint32_t, std::pair<double, const LineObservation*>> nearest;  // in order of their ids
+  for (const LineObservation& line : lines) {
+    const auto seen = line_residual(T_W_I, T_W_I_keyframes[line.keyframe], line, rig);
+    if (!seen) continue;
+    const double off_px = seen->residual.r_px.norm();
+    const auto [at, first] = nearest.try_emplace(line.line_K.id, off_px, &line);
+    if (!first && off_px < at->second.first) at->second = {off_px, &line};
+  }
+  std::vector<LineObservation> kept;
+  for (const auto& [id, best] : nearest) kept.push_back(*best.second);
   return kept;
 }
 
@@ -188,9 +185,9 @@ JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I
   if (!config.lines) return std::move(sums).capped();
   const double most_turn = std::sin(config.line_turn_deg * M_PI / 180.0);
   for (const LineObservation& line : observations.lines) {
-    const auto seen = line_residual(T_W_I, line, rig);
+    const auto seen = line_residual(T_W_I, T_W_I_keyframes[line.keyframe], line, rig);
     if (seen && seen->sin_plane > config.line_plane && seen->sin_turn < most_turn)
-      sums.add(seen->residual, config.line_sigma_px, std::nullopt);
+      sums.add(seen->residual, config.line_sigma_px, line.keyframe);
     else
       sums.reject();
   }

@@ -11,27 +11,28 @@
 namespace pllit {
 
 struct VisualConfig {
-  double point_sigma_px = 1.0;    ///< of a matched point: errors of both detections (the paper's R_0)
-  double line_sigma_px = 1.0;     ///< of a line's end point across it (the paper's R_E)
-  double loss = 2.5;              ///< residual, in standard deviations, at which a match has half its say
-  double gate = 3.5;              ///< residuals beyond this many standard deviations, prior included, do not count
-  double max_information = 60.0;  ///< independent points that an image may count for at most; 0: every one counts
-  bool weights = true;            ///< more weight for points on lines
-  double weight_gain = 1.5;       ///< the paper's eta
-  double weight_sigma_px = 1.5;   ///< the paper's sigma: distance from the line at which the extra weight fades
-  bool lines = true;              ///< explicit lines
-  double line_turn_deg = 7.0;     ///< most that an observed line may be turned against the map's
-  double line_plane = 0.05;       ///< sine of the least angle between the plane through camera and line, and the image
+  double point_sigma_px = 1.0;  ///< of a matched point: errors of both detections (the paper's R_0)
+  double line_sigma_px = 1.0;   ///< of a line's end point across it (the paper's R_E)
+  double loss = 2.5;            ///< residual, in standard deviations, at which a match has half its say
+  double gate = 3.5;            ///< residuals beyond this many standard deviations, prior included, do not count
+  double max_information =
+      60.0;             ///< of how many points of no noise but the detector's an image may say as much; 0: no limit
+  bool weights = true;  ///< more weight for points on lines
+  double weight_gain = 1.5;      ///< the paper's eta
+  double weight_sigma_px = 1.5;  ///< the paper's sigma: distance from the line at which the extra weight fades
+  bool lines = true;             ///< explicit lines
+  double line_turn_deg = 7.0;    ///< most that an observed line may be turned against the map's
+  double line_plane = 0.05;      ///< sine of the least angle between the plane through camera and line, and the image
 };
 
 /// The paper's adaptive weights w of points, scaled so that the mean of w^2, which is what the information grows with,
 /// is 1: they share out what an image may say and add nothing to it. All 1 where config.weights is off.
 std::vector<double> adaptive_weights(std::span<const PointObservation> points, const VisualConfig& config);
 
-/// Without the points that lie on an observed line of the map, which speaks for them: their matched line passes within
-/// `distance_px` of them, between its end points.
-std::vector<PointObservation> off_lines(std::span<const PointObservation> points,
-                                        std::span<const LineObservation> lines, double distance_px = 3.0);
+/// Of several observed lines that are said to be the same line of the map (parallel edges a few centimetres apart, or
+/// one edge in pieces) the one that lies nearest to where a camera at this pose sees it.
+std::vector<LineObservation> nearest_of_each(std::span<const LineObservation> lines, const SE3& T_W_I,
+                                             std::span<const SE3> T_W_I_keyframes, const Rig& rig);
 
 /// Normal equations over the errors of `state` and of the keyframes' poses. Each residual's noise holds the detector's,
 /// by weight, and that of its depth or line; a redescending loss (Cauchy's) bounds what false matches say. Matches
