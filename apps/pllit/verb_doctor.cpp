@@ -2,12 +2,17 @@
 #include <spdlog/spdlog.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <format>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "pllit/io/bag_description.hpp"
 #include "pllit/io/bag_reader.hpp"
+#include "pllit/io/file.hpp"
+#include "pllit/report/overlay.hpp"
+#include "pllit/slam/calm_moments.hpp"
 #include "pllit/slam/inspection.hpp"
 #include "program.hpp"
 #include "progress_bar.hpp"
@@ -20,8 +25,8 @@ using Json = nlohmann::ordered_json;
 
 struct DoctorOptions {
   std::vector<std::string> sources, settings;
-  std::string config;
-  bool json = false;
+  std::string config, overlay;
+  bool json = false, overwrite = false;
 };
 
 Json topics_json(const std::vector<std::string>& sources) {
@@ -106,6 +111,11 @@ std::string inspection_text(const Json& json) {
                 : std::format("clocks   offset of IMU and LiDAR not found: {}\n",
                               json["imu_to_lidar_offset_reason"].get<std::string>());
   }
+  if (json["overlay"].is_string())
+    text += std::format(
+        "overlay  {}: the LiDAR over {} images. Steps of colour lie on edges of things; where all of them lie beside, "
+        "rig.camera or its delay_s is wrong\n",
+        json["overlay"].get<std::string>(), json["overlay_images"].get<int>());
   for (const Json& note : json["notes"]) text += "note     " + note.get<std::string>() + "\n";
   for (const Json& warning : json["warnings"]) text += "warning  " + warning.get<std::string>() + "\n";
   for (const Json& problem : json["problems"]) text += "problem  " + problem.get<std::string>() + "\n";
@@ -130,16 +140,43 @@ std::string run_command(const DoctorOptions& options) {
   return command;
 }
 
+/// Draws the LiDAR over images of calm moments, and tells where.
+Expected<void> write_overlay(const DoctorOptions& options, const Rig& rig, const std::vector<CalmMoment>& moments,
+                             Json& json) {
+  if (moments.empty())
+    return input_error("there is nothing to draw for --overlay: no image was taken during a LiDAR scan");
+  std::vector<OverlayImage> images;
+  for (const CalmMoment& moment : moments) {
+    if (moment.counts.cols != rig.camera->width || moment.counts.rows != rig.camera->height)
+      return input_error(std::format("images are {} x {} px, but the calibration (rig.camera.size_px) is for {} x {}",
+                                     moment.counts.cols, moment.counts.rows, rig.camera->width, rig.camera->height));
+    images.push_back(
+        {.counts = moment.counts,
+         .points_C = moment.points_C,
+         .caption = std::format("{:.1f} s, turning at {:.0f} deg/s", to_seconds(moment.time - moments.front().time),
+                                moment.turn_rps * 180.0 / M_PI)});
+  }
+  std::vector<unsigned char> png;
+  cv::imencode(".png", overlay_sheet(images, *rig.camera), png);
+  const auto written = write_file(options.overlay, {reinterpret_cast<const char*>(png.data()), png.size()});
+  if (!written) return std::unexpected(written.error());
+  json["overlay"] = options.overlay;
+  json["overlay_images"] = images.size();
+  return {};
+}
+
 /// Reads the whole source and adds what it shows.
-Expected<void> inspect(OpenedSource source, const Config& config, Json& json) {
+Expected<void> inspect(OpenedSource source, const Config& config, const DoctorOptions& options, Json& json) {
   ProgressBar bar("messages", spdlog::should_log(spdlog::level::info));
   Inspector inspector(source.rig, config);
+  CalmMoments moments(source.rig);
   long count = 0;
   while (true) {
     const auto event = source.events->next();
     if (!event) return std::unexpected(event.error());
     if (!*event) break;
     inspector.add(**event);
+    if (!options.overlay.empty()) moments.add(**event);
     bar.show(source.events->progress(), ++count);
   }
   json.update(inspection_json(inspector.finish()));
@@ -148,19 +185,28 @@ Expected<void> inspect(OpenedSource source, const Config& config, Json& json) {
     if (const auto layout = bags->time_layout())
       json["point_times"] = std::format("field {} ({}), {} in {}", layout->field, layout->datatype,
                                         layout->absolute ? "absolute" : "relative", name_of(layout->unit));
+  if (!options.overlay.empty()) return write_overlay(options, source.rig, moments.moments(), json);
   return {};
 }
 
 Expected<Json> diagnose(const DoctorOptions& options) {
   const auto config = read_config(options.config, options.settings);
   if (!config) return std::unexpected(config.error());
-  Json json{{"schema_version", kSchemaVersion}, {"topics", topics_json(options.sources)},
-            {"notes", Json::array()},           {"warnings", Json::array()},
-            {"problems", Json::array()},        {"run", nullptr}};
+  if (!options.overlay.empty() && std::filesystem::exists(options.overlay) && !options.overwrite)
+    return input_error(std::format("'{}' exists; give another name with --overlay, or --overwrite", options.overlay));
+  Json json{{"schema_version", kSchemaVersion},
+            {"topics", topics_json(options.sources)},
+            {"notes", Json::array()},
+            {"warnings", Json::array()},
+            {"problems", Json::array()},
+            {"overlay", nullptr},
+            {"run", nullptr}};
   auto source = open_source(options.sources, *config, Images::wanted);
   if (!source && json["topics"].empty()) return std::unexpected(source.error());
+  if (source && !options.overlay.empty() && !source->rig.camera)
+    return input_error("--overlay needs a camera, and the configuration has none: give rig.camera (see config --dump)");
   const auto inspected =
-      source ? inspect(std::move(*source), *config, json) : Expected<void>(std::unexpected(source.error()));
+      source ? inspect(std::move(*source), *config, options, json) : Expected<void>(std::unexpected(source.error()));
   if (!inspected) json["problems"].push_back(inspected.error().message);
   if (json["problems"].empty()) json["run"] = run_command(options);
   return json;
@@ -187,8 +233,13 @@ Verb add_doctor(CLI::App& program) {
       ->type_name("KEY=VALUE")
       ->take_all()
       ->expected(1);
+  verb->add_option("--overlay", options->overlay, "Draw the LiDAR over images, to see a wrong extrinsic before a run")
+      ->type_name("FILE.png");
+  verb->add_flag("--overwrite", options->overwrite, "Replace the picture if it exists");
   verb->add_flag("--json", options->json, "Print JSON");
-  verb->footer("Examples:\n  pllit doctor drive.bag --config kitti");
+  verb->footer(
+      "Examples:\n  pllit doctor drive.bag --config kitti\n  pllit doctor walk.bag --config inspection --overlay "
+      "overlay.png");
   return {verb, [options] { return run(*options); }};
 }
 

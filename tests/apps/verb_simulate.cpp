@@ -23,6 +23,15 @@ TEST_F(Simulate, WritesABagThatDoctorAndRunAccept) {
   const auto doctor = run({"doctor", path("room.bag"), "--config", "inspection"});
   EXPECT_EQ(doctor.exit_code, 0) << doctor.err;
   EXPECT_THAT(doctor.out, HasSubstr("/thermal/image_agc"));
+  const std::vector<std::string> drawing{"doctor",     path("room.bag"), "--config",
+                                         "inspection", "--overlay",      path("o.png")};
+  EXPECT_THAT(run(drawing).out, HasSubstr("the LiDAR over"));
+  EXPECT_TRUE(read(path("o.png")).starts_with("\x89PNG"));
+  EXPECT_EQ(run(drawing).exit_code, 2) << "there is a picture already";
+  const auto blind =
+      run({"doctor", path("room.bag"), "--overlay", path("p.png"), "--set", "input.image_topic=/thermal/image_agc"});
+  EXPECT_EQ(blind.exit_code, 2);
+  EXPECT_THAT(blind.err + blind.out, HasSubstr("rig.camera"));
 
   const auto session = run({"run", path("room.bag"), "--config", "inspection", "--truth", path("room.tum"), "--out",
                             path("session"), "--json"});
