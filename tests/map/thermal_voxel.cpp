@@ -191,6 +191,16 @@ TEST(ThermalVoxel, KeepsFalseAlarmsToWhatTheArithmeticOfThreeSigmaSays) {
   EXPECT_EQ(hot_at_5, 0);
 }
 
+TEST(ThermalVoxel, RemembersTheMostThatTwoImagesInARowShowed) {
+  Shown shown;
+  for (const double value : {100.0, 190.0, 100.0, 140.0, 150.0, 100.0}) shown(value);
+  EXPECT_FLOAT_EQ(shown.voxel.brightest, 140.0F);
+  EXPECT_EQ(shown.voxel.brightest_at, Time{} + std::chrono::milliseconds(500));
+  shown(220.0, 0.0, 0.0, 50.0);  // in images that say little
+  shown(220.0, 0.0, 0.0, 50.0);
+  EXPECT_FLOAT_EQ(shown.voxel.brightest, 140.0F);
+}
+
 TEST(ThermalVoxel, CountsViewpointsAQuarterOfAMetreApart) {
   Shown shown;
   for (int i = 0; i < 100; ++i) shown(100.0);  // a walk of 1 m

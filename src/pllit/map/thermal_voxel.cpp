@@ -68,6 +68,17 @@ void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfi
   if (voxel.changes == 0) learn(voxel, sample, (std::abs(d) > gate ? 0.25F : 1.0F) * trust, config);
 }
 
+/// Of images that say little, nothing.
+void remember_brightest(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfig& config) {
+  if (std::hypot(sample.doubt, sample.spread) > static_cast<float>(config.min_change)) return;
+  const float both = std::min(voxel.last, sample.intensity);
+  if (voxel.images > 0 && (voxel.brightest_at == Time{} || both > voxel.brightest)) {
+    voxel.brightest = both;
+    voxel.brightest_at = sample.time;
+  }
+  voxel.last = sample.intensity;
+}
+
 }  // namespace
 
 float ThermalVoxel::variance(const VoxelModelConfig& config) const {
@@ -93,6 +104,7 @@ ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelMode
   voxel.offset_sum_m += static_cast<float>(sample.points) * sample.offset_m;
   voxel.points += static_cast<float>(sample.points);
   voxel.raw = sample.raw;
+  remember_brightest(voxel, sample, config);
   if (voxel.learned(config))
     judge(voxel, sample, config);
   else

@@ -46,6 +46,9 @@ struct ThermalVoxel {
   float doubt = 0.0F;                 ///< of the calibration that the mean was learned with, one sigma
   float saturated = 0.0F;             ///< share of what it was learned from that was at least so bright
   float changed_mean = 0.0F;          ///< short-term model
+  float last = 0.0F;                  ///< what the last image showed
+  float brightest = 0.0F;             ///< the most that two images in a row showed
+  Time brightest_at;                  ///< when they did; Time{} where none did yet
   float raw = 0.0F;                   ///< of the last image, as the camera gave it, for human eyes
   std::uint32_t images = 0;
   std::uint16_t views = 0;    ///< viewpoints a quarter of a metre apart

@@ -26,12 +26,15 @@ void for_older_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey ke
   });
 }
 
-/// Whether something next to it has always been nearly as hot: calibration is good to a few pixels only.
+/// Whether something next to it has always been nearly as hot, or at times: calibration is good to a few pixels only,
+/// and what lies on a seam shows now the one side and now the other.
 bool explained_by_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey key, float hot, float change,
                              Time before, const WatchConfig& config) {
   bool explained = false;
   for_older_neighbours(map, watch, key, config.seam_voxels, before, [&](const ThermalVoxel& voxel) {
-    if (voxel.mean > hot - 0.5F * change) explained = true;
+    const bool at_times =
+        voxel.brightest_at != Time{} && voxel.brightest_at < before - from_seconds(config.seam_lead_s);
+    if (voxel.mean > hot - 0.5F * change || (at_times && voxel.brightest > hot - 0.25F * change)) explained = true;
   });
   return explained;
 }
@@ -121,6 +124,7 @@ void note_heat(WatchedVoxel& watched, float value, Time time) {
 /// A voxel with a past that its own model calls hot.
 void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
                    const WatchConfig& config) {
+  if (to_seconds(voxel.change_since - voxel.first_seen) < config.least_past_s) return;
   const float change = voxel.changed_mean - voxel.mean;
   if (explained_by_neighbours(input.map, watch, key, voxel.changed_mean, change, voxel.change_since, config)) return;
   WatchedVoxel watched{.since = voxel.change_since,
