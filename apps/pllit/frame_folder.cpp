@@ -4,9 +4,9 @@
 #include <cmath>
 #include <format>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "pllit/io/file.hpp"
+#include "pllit/report/pictures.hpp"
 #include "program.hpp"
 
 namespace pllit::app {
@@ -77,11 +77,9 @@ std::string FrameFolder::file_name(const char* key, const char* extension) const
 }
 
 Expected<void> FrameFolder::write_png(const char* key, const cv::Mat& image) {
-  std::vector<std::uint8_t> file;
-  cv::imencode(".png", image, file);
   const std::string name = file_name(key, "png");
   frames_.back()[key] = name;
-  return write_file(folder_ / name, {reinterpret_cast<const char*>(file.data()), file.size()});
+  return write_file(folder_ / name, png_of(image));
 }
 
 Expected<void> FrameFolder::write_edges(const std::vector<ImageEdge>& edges) {

@@ -6,14 +6,15 @@
 #include <format>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "pllit/io/bag_description.hpp"
 #include "pllit/io/bag_reader.hpp"
 #include "pllit/io/file.hpp"
 #include "pllit/report/overlay.hpp"
+#include "pllit/report/pictures.hpp"
 #include "pllit/slam/calm_moments.hpp"
 #include "pllit/slam/inspection.hpp"
+#include "pllit/thermal/image_check.hpp"
 #include "program.hpp"
 #include "progress_bar.hpp"
 #include "source.hpp"
@@ -147,18 +148,14 @@ Expected<void> write_overlay(const DoctorOptions& options, const Rig& rig, const
     return input_error("there is nothing to draw for --overlay: no image was taken during a LiDAR scan");
   std::vector<OverlayImage> images;
   for (const CalmMoment& moment : moments) {
-    if (moment.counts.cols != rig.camera->width || moment.counts.rows != rig.camera->height)
-      return input_error(std::format("images are {} x {} px, but the calibration (rig.camera.size_px) is for {} x {}",
-                                     moment.counts.cols, moment.counts.rows, rig.camera->width, rig.camera->height));
+    if (const auto fitting = fits(moment.counts, *rig.camera); !fitting) return fitting;
     images.push_back(
         {.counts = moment.counts,
          .points_C = moment.points_C,
          .caption = std::format("{:.1f} s, turning at {:.0f} deg/s", to_seconds(moment.time - moments.front().time),
                                 moment.turn_rps * 180.0 / M_PI)});
   }
-  std::vector<unsigned char> png;
-  cv::imencode(".png", overlay_sheet(images, *rig.camera), png);
-  const auto written = write_file(options.overlay, {reinterpret_cast<const char*>(png.data()), png.size()});
+  const auto written = write_file(options.overlay, png_of(overlay_sheet(images, *rig.camera)));
   if (!written) return std::unexpected(written.error());
   json["overlay"] = options.overlay;
   json["overlay_images"] = images.size();

@@ -174,12 +174,12 @@ Step weighted_step(std::span<const WorldPoint> points, const LineLandmark& line,
     if (!sums.last || share > sums.last->share) sums.last = slide;
   }
   // Each sighting as one measurement of the four shifts, its common error on top.
+  const double common_m2 = config.common_sigma_m * config.common_sigma_m;
   Matrix4d information = Matrix4d::Zero();
   Vector4d pull = Vector4d::Zero();
   for (const Sums& sums : seen) {
     if (!sums.first) continue;
     const Matrix4d own = sums.H.inverse();
-    const double common_m2 = config.common_sigma_m * config.common_sigma_m;
     const Matrix4d weight = (own + shared_covariance(*sums.first, *sums.last, common_m2)).inverse();
     information += weight;
     pull += weight * (own * sums.b);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "pllit/base/evenly.hpp"
+
 namespace pllit {
 
 namespace {
@@ -47,15 +49,6 @@ Stretch in_image(const LineLandmark& line, const SE3& T_C_W, const Camera& camer
   return longest;
 }
 
-/// At most `count` of the points, evenly.
-std::vector<EdgePoint> thinned(std::vector<EdgePoint> points, int count) {
-  const auto most = static_cast<std::size_t>(count);
-  if (points.size() <= most) return points;
-  for (std::size_t i = 0; i < most; ++i) points[i] = points[i * points.size() / most];
-  points.resize(most);
-  return points;
-}
-
 }  // namespace
 
 TrackId LineMap::observe(std::optional<TrackId> track, LineSighting sighting) {
@@ -65,7 +58,7 @@ TrackId LineMap::observe(std::optional<TrackId> track, LineSighting sighting) {
   of.last_image = image_;
   if (of.line && lines_.contains(*of.line)) ++lines_[*of.line].sightings;
   if (of.seen <= config_.most_sightings) {
-    sighting.points = thinned(std::move(sighting.points), config_.points_per_sighting);
+    sighting.points = evenly(sighting.points, static_cast<std::size_t>(config_.points_per_sighting));
     of.sightings.push_back(std::move(sighting));
     promote(of);
   } else {

@@ -3,8 +3,9 @@
 #include <chrono>
 #include <cstdint>
 #include <format>
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
+
+#include "pllit/report/pictures.hpp"
 
 namespace pllit {
 
@@ -50,10 +51,7 @@ std::string base64(std::string_view bytes) {
 
 std::string image_tag(const cv::Mat& picture, std::string_view alt) {
   if (picture.empty()) return "";
-  std::vector<unsigned char> png;
-  cv::imencode(".png", picture, png);
-  return std::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", escaped(alt),
-                     base64({reinterpret_cast<const char*>(png.data()), png.size()}));
+  return std::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", escaped(alt), base64(png_of(picture)));
 }
 
 std::string utc_text(double seconds) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
@@ -136,6 +137,12 @@ cv::Mat thermogram(const cv::Mat& raw) {
   cv::cvtColor(level, grey, cv::COLOR_GRAY2BGR);
   cv::hconcat(colour, grey, both);
   return both;
+}
+
+std::string png_of(const cv::Mat& picture) {
+  std::vector<unsigned char> png;
+  cv::imencode(".png", picture, png);
+  return {png.begin(), png.end()};
 }
 
 }  // namespace pllit

@@ -3,6 +3,7 @@
 
 #include <opencv2/core/mat.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pllit/state/anomaly.hpp"
@@ -35,5 +36,8 @@ cv::Mat plan_of(const PointTable& map, const Trajectory& trajectory, std::span<c
 
 /// Pseudo-colour and grey side by side, enlarged to be looked at, CV_8UC3. Takes CV_8UC1 and CV_16UC1.
 cv::Mat thermogram(const cv::Mat& raw);
+
+/// The bytes of a PNG file.
+std::string png_of(const cv::Mat& picture);
 
 }  // namespace pllit

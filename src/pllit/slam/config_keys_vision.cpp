@@ -40,7 +40,7 @@ void list_vision(Section section, VisionConfig& config) {
   section.add("gate", config.residuals.gate, "Residuals beyond this many standard deviations do not count.", "",
               {0.1, 100.0});
   section.add("max_information", config.residuals.max_information,
-              "Independent points that an image counts for at most; 0: every one counts.", "", {0.0, 1e6});
+              "Of how many points an image may say as much, at most; 0: no limit.", "", {0.0, 1e6});
   section.add("weight_gain", config.residuals.weight_gain, "Weight of a point on a line (the paper's eta).", "",
               {1.0, 10.0});
   section.add("weight_sigma_px", config.residuals.weight_sigma_px,

@@ -54,9 +54,7 @@ void Vision::look_at(const CameraFrame& image) {
 Expected<Vision::Look> Vision::look(const CameraFrame& image) const {
   Look look{.verdict = judge(image, history_, config_.check)};
   if (!look.verdict.usable()) return look;
-  if (image.counts.cols != rig_.camera->width || image.counts.rows != rig_.camera->height)
-    return input_error(std::format("images are {} x {} px, but the calibration (rig.camera.size_px) is for {} x {}",
-                                   image.counts.cols, image.counts.rows, rig_.camera->width, rig_.camera->height));
+  if (const auto fitting = fits(image.counts, *rig_.camera); !fitting) return std::unexpected(fitting.error());
   look.counts = one_channel(image.counts);
   look.chain = chain_;
   cv::Mat grey = look.counts;

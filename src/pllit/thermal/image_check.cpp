@@ -79,6 +79,12 @@ ImageVerdict judge(const CameraFrame& frame, const ImageHistory& before, const I
   return verdict;
 }
 
+Expected<void> fits(const cv::Mat& counts, const Camera& camera) {
+  if (counts.cols == camera.width && counts.rows == camera.height) return {};
+  return input_error(std::format("images are {} x {} px, but the calibration (rig.camera.size_px) is for {} x {}",
+                                 counts.cols, counts.rows, camera.width, camera.height));
+}
+
 ImageHistory remembered(const CameraFrame& frame, const ImageVerdict& verdict, const ImageHistory& before) {
   if (verdict.kind == Kind::unknown_format) return before;
   if (verdict.kind == Kind::repeated)

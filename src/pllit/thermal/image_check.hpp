@@ -4,6 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
+#include "pllit/geometry/camera.hpp"
 #include "pllit/sensor/measurements.hpp"
 
 namespace pllit {
@@ -37,6 +38,9 @@ struct ImageVerdict {
 /// Judges one image. A repetition is one that equals the last image but for a share of its pixels that noise alone
 /// exceeds in any live image.
 ImageVerdict judge(const CameraFrame& frame, const ImageHistory& before, const ImageCheckConfig& config);
+
+/// Whether an image is as large as those that the camera was calibrated with; if not, an input error with both sizes.
+Expected<void> fits(const cv::Mat& counts, const Camera& camera);
 
 /// The history to judge the next image with.
 ImageHistory remembered(const CameraFrame& frame, const ImageVerdict& verdict, const ImageHistory& before);

@@ -11,18 +11,17 @@
 namespace pllit {
 
 struct VisualConfig {
-  double point_sigma_px = 1.0;  ///< of a matched point: errors of both detections (the paper's R_0)
-  double line_sigma_px = 1.0;   ///< of a line's end point across it (the paper's R_E)
-  double loss = 2.5;            ///< residual, in standard deviations, at which a match has half its say
-  double gate = 3.5;            ///< residuals beyond this many standard deviations, prior included, do not count
-  double max_information =
-      60.0;             ///< of how many points of no noise but the detector's an image may say as much; 0: no limit
-  bool weights = true;  ///< more weight for points on lines
-  double weight_gain = 1.5;      ///< the paper's eta
-  double weight_sigma_px = 1.5;  ///< the paper's sigma: distance from the line at which the extra weight fades
-  bool lines = true;             ///< explicit lines
-  double line_turn_deg = 7.0;    ///< most that an observed line may be turned against the map's
-  double line_plane = 0.05;      ///< sine of the least angle between the plane through camera and line, and the image
+  double point_sigma_px = 1.0;    ///< of a matched point: errors of both detections (the paper's R_0)
+  double line_sigma_px = 1.0;     ///< of a line's end point across it (the paper's R_E)
+  double loss = 2.5;              ///< residual, in standard deviations, at which a match has half its say
+  double gate = 3.5;              ///< residuals beyond this many standard deviations, prior included, do not count
+  double max_information = 60.0;  ///< of how many points, if sure of their depth, an image may say as much; 0: no limit
+  bool weights = true;            ///< more weight for points on lines
+  double weight_gain = 1.5;       ///< the paper's eta
+  double weight_sigma_px = 1.5;   ///< the paper's sigma: distance from the line at which the extra weight fades
+  bool lines = true;              ///< explicit lines
+  double line_turn_deg = 7.0;     ///< most that an observed line may be turned against the map's
+  double line_plane = 0.05;       ///< sine of the least angle between the plane through camera and line, and the image
 };
 
 /// The paper's adaptive weights w of points, scaled so that the mean of w^2, which is what the information grows with,
