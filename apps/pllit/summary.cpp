@@ -3,8 +3,10 @@
 #include <sys/resource.h>
 
 #include <format>
+#include <numbers>
 
 #include "findings.hpp"
+#include "pllit/geometry/lie_json.hpp"
 #include "program.hpp"
 
 namespace pllit::app {
@@ -43,6 +45,20 @@ Json summary_json(const RunSummary& summary) {
   return json;
 }
 
+Json camera_json(const RefinedMount& mount, const Rig& rig) {
+  constexpr double deg = 180.0 / std::numbers::pi;
+  const Vector7 moved = boxminus(mount.mean, {.T_I_C = rig.T_I_C}), sigmas = mount.covariance.diagonal().cwiseSqrt();
+  const auto sizes = [](const Vector7& error) -> Json {
+    return {{"turn_deg", deg * error.head<3>().norm()},
+            {"shift_m", error.segment<3>(mount_index::p).norm()},
+            {"delay_s", error[mount_index::delay]}};
+  };
+  return {{"T_I_C", pose_json(mount.mean.T_I_C)},
+          {"delay_s", to_seconds(rig.camera_delay) + mount.mean.delay_s},
+          {"moved", sizes(moved)},
+          {"sigma", sizes(sigmas)}};
+}
+
 std::string summary_text(const Json& json) {
   const Json& health = json["health"];
   std::string text = std::format(
@@ -58,6 +74,11 @@ std::string summary_text(const Json& json) {
   if (const auto doubts = health["doubts"].get<std::string>(); !doubts.empty())
     text += std::format("doubts      {} ({})\n", doubts,
                         json["status"] == "done" ? "therefore exit code 3" : json["status"].get<std::string>());
+  if (json.contains("camera")) {
+    const auto moved = [&](const char* key) { return json["camera"]["moved"][key].get<double>(); };
+    text += std::format("camera      turned by {:.2f} deg, moved by {:.0f} mm, {:+.1f} ms later than configured\n",
+                        moved("turn_deg"), 1e3 * moved("shift_m"), 1e3 * moved("delay_s"));
+  }
   if (json.contains("loops"))
     text += std::format("loops       {} closed, {} candidates refused\n", json["loops"]["accepted"].get<int>(),
                         json["loops"]["rejected"].get<int>());

@@ -8,9 +8,11 @@
 
 namespace pllit::app {
 
-/// Keys as docs/OUTPUTS.md lists them; `schema_version` first.
+/// What run.json says of a run; `schema_version` first.
 nlohmann::ordered_json summary_json(const RunSummary& summary);
-/// The same, scores included where `json` holds them, in a few lines.
+/// The camera's pose on the rig and delay as refined, what they have moved by from `rig`, and one sigma of that.
+nlohmann::ordered_json camera_json(const RefinedMount& mount, const Rig& rig);
+/// The same as text, scores included where `json` holds them, in a few lines.
 std::string summary_text(const nlohmann::ordered_json& json);
 
 }  // namespace pllit::app

@@ -57,9 +57,10 @@ FrameSink with_loops(FrameSink sink, LoopStage& loops) {
   };
 }
 
-nlohmann::ordered_json run_json(const RunSummary& summary, const RunOptions& options, const Config& config,
-                                const char* status) {
+nlohmann::ordered_json run_json(const RunSummary& summary, const Rig& rig, const RunOptions& options,
+                                const Config& config, const char* status) {
   nlohmann::ordered_json json = summary_json(summary);
+  if (summary.mount) json["camera"] = camera_json(*summary.mount, rig);
   json["status"] = status;
   json["program"] = version_line();
   json["sources"] = options.sources;
@@ -107,7 +108,7 @@ class SessionRun {
         return std::unexpected(done.error());
     RunSummary summary;
     // What a kill leaves behind says of itself that it is unfinished.
-    if (auto done = session_.write_run(run_json(summary, options_, config_, "unfinished")); !done)
+    if (auto done = session_.write_run(run_json(summary, source_.rig, options_, config_, "unfinished")); !done)
       return std::unexpected(done.error());
     auto result = run(summary);
     if (const auto closed = close_loops(summary); result && !closed) result = closed;
@@ -144,7 +145,7 @@ class SessionRun {
 
   Expected<ExitCode> finish(const RunSummary& summary, const Expected<void>& result) {
     const char* status = !result ? "failed" : summary.interrupted ? "interrupted" : "done";
-    auto json = run_json(summary, options_, config_, status);
+    auto json = run_json(summary, source_.rig, options_, config_, status);
     if (!result) json["error"] = result.error().message;
     json["loops"] = {{"accepted", loops_.accepted},
                      {"rejected", loops_.records.size() - static_cast<std::size_t>(loops_.accepted)}};

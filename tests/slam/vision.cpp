@@ -36,6 +36,20 @@ TEST(Vision, HoldsTheAxisOfACorridorThatTheLidarCannotSeeAlong) {
   EXPECT_LT(error_m(seeing), 4.0 * sigma.tail<3>().norm()) << "and knows how well";
 }
 
+TEST(Vision, FindsOutByHowMuchTheCamerasClockIsOff) {
+  using namespace std::chrono_literals;
+  for (const Duration early : {6ms, -6ms}) {
+    const auto run = test::run_simulation("sim:room?rig=hilti2022&duration=10&seed=6&ideal=1", {}, early);
+    ASSERT_TRUE(run.result && run.summary.mount);
+    const double delay_s = run.summary.mount->mean.delay_s;
+    const double sigma_s = std::sqrt(run.summary.mount->covariance(mount_index::delay, mount_index::delay));
+    EXPECT_NEAR(delay_s, -to_seconds(early), 0.0015);
+    EXPECT_LT(std::abs(delay_s + to_seconds(early)), 4.0 * sigma_s);
+    EXPECT_LT(sigma_s, 0.001);
+    EXPECT_LT(error_m(run), 0.02);
+  }
+}
+
 /// A simulation whose images show nothing.
 class Blank : public EventSource {
  public:

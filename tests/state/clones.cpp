@@ -20,10 +20,13 @@ struct Joint {
   Clones clones;
 };
 
+/// Of an image that is exposed at its time.
+Exposure in_time(const Estimate& estimate) { return exposure(estimate.mean, 0.0, Vector3d::Zero()); }
+
 Joint random_joint(Random& random) {
   Joint joint{.estimate = {.mean = random.state(), .covariance = random.covariance(0.1)}, .clones = {}};
   for (int i = 0; i < 2; ++i) {
-    add_clone(joint.clones, joint.estimate);
+    add_clone(joint.clones, joint.estimate, in_time(joint.estimate));
     const Matrix18 J = Matrix18::Identity() + 0.3 * Matrix18::NullaryExpr([&] { return random.normal(0.1); });
     carry(joint.clones, J);
     joint.estimate.covariance = J * joint.estimate.covariance * J.transpose() + random.covariance(0.02);
@@ -35,11 +38,11 @@ Joint random_joint(Random& random) {
 /// Measures where the state is seen from clone 1, in W: linear in the errors but for the turn of the state's own frame.
 LinearizeJoint relative_position(const Joint& joint, const Vector3d& measured, double sigma) {
   const Vector3d from = joint.clones.poses[1].translation();
-  return [=](const NavState& x, std::span<const SE3>) {
+  return [=](const NavState& x, const CameraMount&) {
     JointEquations sums(2);
     MatrixXd J = MatrixXd::Zero(3, sums.H.cols());
     J.block<3, 3>(0, ix::p).setIdentity();
-    J.block<3, 3>(0, ix::size + ix::pose_size + 3) = -Matrix3d::Identity();
+    J.block<3, 3>(0, joint_index::clone(1) + 3) = -Matrix3d::Identity();
     const Vector3d r = (x.p_W - from) - measured;
     sums.H = J.transpose() * J / (sigma * sigma);
     sums.b = -J.transpose() * r / (sigma * sigma);
@@ -52,7 +55,7 @@ LinearizeJoint relative_position(const Joint& joint, const Vector3d& measured, d
 TEST(Clones, AFreshOneSharesItsWholeErrorWithTheState) {
   Random random(1);
   Joint joint = random_joint(random);
-  add_clone(joint.clones, joint.estimate);
+  add_clone(joint.clones, joint.estimate, in_time(joint.estimate));
   const MatrixXd P = joint_covariance(joint.estimate, joint.clones);
   MatrixXd difference = MatrixXd::Zero(6, P.cols());
   difference.leftCols<6>().setIdentity();
@@ -67,8 +70,8 @@ TEST(Clones, RemovingOneLeavesTheOthersAsTheyWere) {
   const Clones before = joint.clones;
   remove_clone(joint.clones, 0);
   ASSERT_EQ(joint.clones.size(), 1U);
-  EXPECT_EQ(joint.clones.with_state, before.with_state.rightCols(6));
-  EXPECT_EQ(joint.clones.covariance, before.covariance.bottomRightCorner(6, 6));
+  EXPECT_EQ(joint.clones.with_state.rightCols(6), before.with_state.rightCols(6));
+  EXPECT_EQ(joint.clones.covariance.bottomRightCorner(6, 6), before.covariance.bottomRightCorner(6, 6));
   EXPECT_EQ(joint.clones.poses[0], before.poses[1]);
 }
 
@@ -84,7 +87,7 @@ TEST(JointUpdate, EqualsTheSchmidtGainOnALinearSensor) {
   const MatrixXd P = joint_covariance(joint.estimate, joint.clones);
   MatrixXd H = MatrixXd::Zero(3, P.cols());
   H.block<3, 3>(0, ix::p).setIdentity();
-  H.block<3, 3>(0, ix::size + ix::pose_size + 3) = -Matrix3d::Identity();
+  H.block<3, 3>(0, joint_index::clone(1) + 3) = -Matrix3d::Identity();
   const Matrix3d S = H * P * H.transpose() + sigma * sigma * Matrix3d::Identity();
   MatrixXd K = P * H.transpose() * S.inverse();
   K.bottomRows(12).setZero();
@@ -93,7 +96,7 @@ TEST(JointUpdate, EqualsTheSchmidtGainOnALinearSensor) {
   const MatrixXd kept = MatrixXd::Identity(P.rows(), P.cols()) - K * H;
   const MatrixXd posterior = kept * P * kept.transpose() + sigma * sigma * K * K.transpose();
   const MatrixXd claimed = joint_covariance(update.posterior, update.clones);
-  EXPECT_LT((claimed - posterior).bottomRightCorner(27, 27).norm(), 1e-6) << "but for the turn of the tangent space";
+  EXPECT_LT((claimed - posterior).bottomRightCorner(34, 34).norm(), 1e-6) << "but for the turn of the tangent space";
   EXPECT_LT((update.clones.covariance - joint.clones.covariance).norm(), 1e-12);
 }
 
@@ -102,15 +105,16 @@ TEST(JointUpdate, KnowsTheWayFromAClonePreciselyHoweverUnsureBothAre) {
   estimate.covariance = 1e-6 * Matrix18::Identity();
   estimate.covariance.block<3, 3>(ix::p, ix::p) = Matrix3d::Identity();
   Clones clones;
-  add_clone(clones, estimate);
-  add_clone(clones, estimate);
+  add_clone(clones, estimate, in_time(estimate));
+  add_clone(clones, estimate, in_time(estimate));
   estimate.covariance.block<3, 3>(ix::p, ix::p) += 0.04 * Matrix3d::Identity();  // moved on with some doubt
   const Joint joint{estimate, clones};
   const auto update =
       iterated_update(estimate, clones, relative_position(joint, Vector3d(0.3, 0.0, 0.0), 0.01), FilterConfig{});
   EXPECT_NEAR(update.posterior.mean.p_W.x(), 0.3, 1e-3);
   EXPECT_NEAR(update.posterior.covariance(ix::p, ix::p), 1.0, 0.01) << "the clone's own error stays";
-  const double relative = update.posterior.covariance(ix::p, ix::p) + 1.0 - 2.0 * update.clones.with_state(ix::p, 9);
+  const double relative = update.posterior.covariance(ix::p, ix::p) + 1.0 -
+                          2.0 * update.clones.with_state(ix::p, joint_index::clone(0) + 3 - ix::size);
   EXPECT_NEAR(relative, 1e-4, 1e-5);
 }
 
@@ -134,41 +138,66 @@ TEST(JointUpdate, MovesTheStateAlongGivenDirectionsOnly) {
   EXPECT_LT((none.posterior.covariance - joint.estimate.covariance).norm(), 1e-12);
 }
 
-TEST(JointUpdate, ImprovesAnUnknownPoseAsWellAsTheState) {
-  // The state's position is known from elsewhere; the sensor sees it from its own unknown place, turned.
+TEST(Clones, TheOneOfALateImageKnowsThatItShiftsWithTheDelay) {
+  Random random(9);
+  Estimate estimate{.mean = random.state(), .covariance = 1e-8 * Matrix18::Identity()};
+  estimate.mean.v_W = Vector3d(2.0, 0.0, 0.0);
+  Matrix7 covariance = Matrix7::Zero();
+  covariance(mount_index::delay, mount_index::delay) = 0.005 * 0.005;
+  Clones clones = without_poses({}, covariance);
+  add_clone(clones, estimate, exposure(estimate.mean, 0.01, Vector3d(0.0, 0.0, 0.8)));
+  EXPECT_NEAR((clones.poses[0].translation() - estimate.mean.p_W).norm(), 0.02, 1e-12);
+  const auto own = clones.covariance.bottomRightCorner<6, 6>();
+  EXPECT_NEAR(std::sqrt(own(2, 2)), 0.8 * 0.005, 1e-5);
+  EXPECT_NEAR(std::sqrt(own(3, 3)), 2.0 * 0.005, 1e-5);
+  EXPECT_NEAR(clones.covariance(mount_index::delay, mount_index::size + 3), 2.0 * 0.005 * 0.005, 1e-9);
+}
+
+TEST(JointUpdate, ImprovesTheMountAsWellAsTheState) {
+  // The state is known from elsewhere; the camera sees it from its own unknown place, turned, and late.
   Estimate estimate;
   estimate.covariance = 1e-10 * Matrix18::Identity();
-  const Vector3d wrong(0.02, -0.01, 0.03);
-  const SE3 mounted = pose_from(exp_so3(wrong), Vector3d(0.1, 0.2, 0.3));
-  Clones clones = with_unknown(pose_from(SO3::Identity(), Vector3d(0.1, 0.2, 0.3)),
-                               Vector6(Vector6::Constant(0.03 * 0.03)).asDiagonal());
+  estimate.mean.v_W = Vector3d(1.0, -0.5, 0.0);
+  const Vector3d rate_I(0.2, -0.5, 1.0), place(0.1, 0.2, 0.3);
+  const CameraMount truth{.T_I_C = pose_from(exp_so3(Vector3d(0.02, -0.01, 0.03)), place), .delay_s = 0.004};
+  Vector7 sigmas;
+  sigmas << Vector6::Constant(0.03), 0.005;
+  const Clones clones =
+      without_poses({.T_I_C = pose_from(SO3::Identity(), place)}, sigmas.cwiseAbs2().asDiagonal().toDenseMatrix());
+  // Turning one way and the other tells a delay from a turned mount.
   const std::vector<Vector3d> points{{4.0, 1.0, 0.5}, {5.0, -2.0, 1.0}, {3.0, 0.5, -1.0}, {-4.0, 3.0, 1.0}};
-  const auto sensor = [&](const NavState& x, std::span<const SE3> poses) {
-    JointEquations sums(1);
-    for (const Vector3d& p_W : points) {
-      const Vector3d p_I = x.T_W_I().inverse().act(p_W), seen = mounted.inverse().act(p_W);
-      const Vector3d p_S = poses[0].inverse().act(p_I), r = seen - p_S;
-      MatrixXd J = MatrixXd::Zero(3, sums.H.cols());
-      J.block<3, 3>(0, ix::size) = -skew(p_S);
-      J.block<3, 3>(0, ix::size + 3) = Matrix3d(poses[0].rotation().transpose());
-      sums.H += 1e6 * J.transpose() * J;
-      sums.b -= 1e6 * J.transpose() * r;
-      sums.cost += 1e6 * r.squaredNorm();
-      sums.inliers += 3;
-    }
+  const auto sensor = [&](const NavState& x, const CameraMount& mount) {
+    JointEquations sums;
+    for (const double way : {1.0, -1.0})
+      for (const Vector3d& p_W : points) {
+        const auto seen_by = [&](const CameraMount& by) {
+          const SE3 T_W_I = exposure(x, by.delay_s, way * rate_I).T_W_I;
+          return (T_W_I * by.T_I_C).inverse().act(p_W);
+        };
+        const Vector3d r = seen_by(truth) - seen_by(mount);
+        MatrixXd J = MatrixXd::Zero(3, sums.H.cols());
+        for (int i = 0; i < mount_index::size; ++i)
+          J.col(joint_index::mount + i) = (seen_by(mount) - seen_by(boxplus(mount, 1e-6 * Vector7::Unit(i)))) / 1e-6;
+        sums.H += 1e6 * J.transpose() * J;
+        sums.b -= 1e6 * J.transpose() * r;
+        sums.cost += 1e6 * r.squaredNorm();
+        sums.inliers += 3;
+      }
     return sums;
   };
   const auto update = iterated_update(estimate, clones, sensor, FilterConfig{});
-  EXPECT_LT(log_so3(mounted.asSO3().inverse() * update.clones.poses[0].asSO3()).norm(), 1e-4);
-  EXPECT_LT((mounted.translation() - update.clones.poses[0].translation()).norm(), 1e-3);
-  EXPECT_LT(update.clones.covariance.trace(), 1e-5);
+  const Vector7 left = boxminus(update.clones.mount, truth);
+  EXPECT_LT(left.head<3>().norm(), 1e-4);
+  EXPECT_LT(left.segment<3>(mount_index::p).norm(), 1e-3);
+  EXPECT_LT(std::abs(left[mount_index::delay]), 2e-4);
+  EXPECT_LT(update.clones.covariance.trace(), 2e-5);
 }
 
 TEST(JointUpdate, WithoutInliersReturnsThePrior) {
   Random random(4);
   const Joint joint = random_joint(random);
   const auto update = iterated_update(
-      joint.estimate, joint.clones, [](const NavState&, std::span<const SE3>) { return JointEquations(2); },
+      joint.estimate, joint.clones, [](const NavState&, const CameraMount&) { return JointEquations(2); },
       FilterConfig{});
   EXPECT_EQ(update.posterior.covariance, joint.estimate.covariance);
   EXPECT_EQ(update.clones.with_state, joint.clones.with_state);
@@ -178,7 +207,7 @@ TEST(JointUpdate, RefusesStepsThatRaiseTheCost) {
   Random random(5);
   const Joint joint = random_joint(random);
   const Vector3d start = joint.estimate.mean.p_W;
-  const auto misleading = [start](const NavState& x, std::span<const SE3>) {
+  const auto misleading = [start](const NavState& x, const CameraMount&) {
     JointEquations sums(2);
     sums.H.block<3, 3>(ix::p, ix::p) = 1e4 * Matrix3d::Identity();
     sums.b.segment<3>(ix::p) = 1e4 * Vector3d(0.1, 0.0, 0.0);  // points away from its own minimum

@@ -20,8 +20,9 @@ struct SimulatedRun {
   SE3 truth_at(const FrameEstimate& frame) const { return motion.at(frame.posterior.mean.time).T_W_I; }
 };
 
-/// `address` is one that exists; configuration errors fail the test.
-inline SimulatedRun run_simulation(const std::string& address, const Config& config = {}) {
+/// `address` is one that exists; configuration errors fail the test. `camera_early`: the delay that the camera is said
+/// to have is so much more than its own.
+inline SimulatedRun run_simulation(const std::string& address, const Config& config = {}, Duration camera_early = {}) {
   auto simulation = open_simulation(address);
   EXPECT_TRUE(simulation.has_value()) << simulation.error().message;
   SimulatedRun run{.result = {}, .summary = {}, .frames = {}, .motion = simulation->motion()};
@@ -30,7 +31,8 @@ inline SimulatedRun run_simulation(const std::string& address, const Config& con
     run.frames.back().cloud = {};
     return {};
   }};
-  const Rig rig = simulation->rig();
+  Rig rig = simulation->rig();
+  rig.camera_delay += camera_early;
   run.result = run_odometry(*simulation, rig, config, hooks, run.summary);
   return run;
 }

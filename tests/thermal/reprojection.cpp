@@ -69,13 +69,15 @@ TEST(PointResidual, DerivativesToBothPosesMatchCentralDifferences) {
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const PointObservation point = random_point(random, scene);
-      const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig);
+      const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera);
       if (!at) continue;
       const Matrix2x6 now = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return point_residual(moved(scene.T_W_I, d), scene.T_W_I_keyframe, point, scene.rig)->r_px;
+        return point_residual(moved(scene.T_W_I, d), scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera)
+            ->r_px;
       });
       const Matrix2x6 keyframe = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return point_residual(scene.T_W_I, moved(scene.T_W_I_keyframe, d), point, scene.rig)->r_px;
+        return point_residual(scene.T_W_I, moved(scene.T_W_I_keyframe, d), point, scene.rig.T_I_C, *scene.rig.camera)
+            ->r_px;
       });
       EXPECT_LT((at->J_now - now).norm(), 1e-5 * now.norm());
       EXPECT_LT((at->J_keyframe - keyframe).norm(), 1e-5 * keyframe.norm());
@@ -88,12 +90,12 @@ TEST(PointResidual, DerivativeToTheCamerasPoseOnTheRigMatchesCentralDifferences)
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const PointObservation point = random_point(random, scene);
-      const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig);
+      const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera);
       if (!at) continue;
       const Matrix2x6 expected = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
         Rig rig = scene.rig;
         rig.T_I_C = moved(rig.T_I_C, d);
-        return point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, rig)->r_px;
+        return point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, rig.T_I_C, *rig.camera)->r_px;
       });
       EXPECT_LT((at->J_camera - expected).norm(), 1e-5 * expected.norm() + 1e-6);
     }
@@ -106,12 +108,12 @@ TEST(LineResidual, DerivativeToTheCamerasPoseOnTheRigMatchesCentralDifferences) 
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const LineObservation line = random_line(random, scene);
-      const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
+      const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera);
       if (!at) continue;
       const Matrix2x6 expected = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
         Rig rig = scene.rig;
         rig.T_I_C = moved(rig.T_I_C, d);
-        return line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, rig)->residual.r_px;
+        return line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, rig.T_I_C, *rig.camera)->residual.r_px;
       });
       EXPECT_LT((at->residual.J_camera - expected).norm(), 1e-4 * expected.norm() + 1e-6);
       ++checked;
@@ -124,12 +126,12 @@ TEST(PointResidual, NoiseIsWhatTheDepthsErrorDoesInTheImage) {
   for (int i = 0; i < 50; ++i) {
     const Scene scene = random_scene(random, test::thermal_camera());
     PointObservation point = random_point(random, scene);
-    const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig);
+    const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera);
     if (!at) continue;
     const auto at_depth = [&](double metres) {
       PointObservation other = point;
       other.p_K_m += metres * point.p_K_m.normalized();
-      return point_residual(scene.T_W_I, scene.T_W_I_keyframe, other, scene.rig)->r_px;
+      return point_residual(scene.T_W_I, scene.T_W_I_keyframe, other, scene.rig.T_I_C, *scene.rig.camera)->r_px;
     };
     const Vector2d shift = (at_depth(1e-5) - at_depth(-1e-5)) / 2e-5 * point.sigma_ray_m;
     EXPECT_LT((at->model_px2 - shift * shift.transpose()).norm(), 1e-5 * shift.squaredNorm() + 1e-12);
@@ -143,7 +145,7 @@ TEST(PointResidual, OfAPointThatIsSeenWhereItIsIsZero) {
   const PointObservation point{.p_K_m = Vector3d(0.4, -0.3, 5.0),
                                .sigma_ray_m = 0.05,
                                .observed_px = *scene.rig.camera->project({0.4, -0.3, 5.0})};
-  const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig);
+  const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera);
   EXPECT_LT(at->r_px.norm(), 1e-9);
   EXPECT_LT(at->model_px2.norm(), 1e-9);                                    // without parallax depth does not matter
   EXPECT_LT((at->J_now + at->J_keyframe).norm(), 1e-9 * at->J_now.norm());  // nor does a motion of both
@@ -153,7 +155,7 @@ TEST(PointResidual, IsNothingBehindTheCamera) {
   Random random(14);
   const Scene scene = random_scene(random, test::thermal_camera());
   const PointObservation point{.p_K_m = Vector3d(0.0, 0.0, -5.0), .observed_px = Vector2d(320.0, 240.0)};
-  EXPECT_FALSE(point_residual(scene.T_W_I_keyframe, scene.T_W_I_keyframe, point, scene.rig));
+  EXPECT_FALSE(point_residual(scene.T_W_I_keyframe, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera));
 }
 
 TEST(LineResidual, DerivativesToBothPosesMatchCentralDifferences) {
@@ -162,13 +164,15 @@ TEST(LineResidual, DerivativesToBothPosesMatchCentralDifferences) {
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const LineObservation line = random_line(random, scene);
-      const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
+      const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera);
       ASSERT_TRUE(at);
       const Matrix2x6 now = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return line_residual(moved(scene.T_W_I, d), scene.T_W_I_keyframe, line, scene.rig)->residual.r_px;
+        return line_residual(moved(scene.T_W_I, d), scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera)
+            ->residual.r_px;
       });
       const Matrix2x6 keyframe = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return line_residual(scene.T_W_I, moved(scene.T_W_I_keyframe, d), line, scene.rig)->residual.r_px;
+        return line_residual(scene.T_W_I, moved(scene.T_W_I_keyframe, d), line, scene.rig.T_I_C, *scene.rig.camera)
+            ->residual.r_px;
       });
       EXPECT_LT((at->residual.J_now - now).norm(), 1e-4 * now.norm());
       EXPECT_LT((at->residual.J_keyframe - keyframe).norm(), 1e-4 * keyframe.norm());
@@ -180,7 +184,7 @@ TEST(LineResidual, DerivativesToTheLineMatchCentralDifferences) {
   for (int i = 0; i < 50; ++i) {
     const Scene scene = random_scene(random, test::thermal_camera());
     const LineObservation line = random_line(random, scene);
-    const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
+    const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera);
     ASSERT_TRUE(at);
     const LineLandmark& map = line.line_K;
     const Eigen::Matrix<double, 2, 4> slope = test::numerical_jacobian<2, 4>([&](const Vector4d& shifts) {
@@ -189,7 +193,7 @@ TEST(LineResidual, DerivativesToTheLineMatchCentralDifferences) {
       const Vector3d b_K = map.centroid + half + shifts[2] * map.u + shifts[3] * map.v;
       LineObservation other = line;
       other.line_K = test::landmark_between(a_K, b_K, 0.02);
-      return line_residual(scene.T_W_I, scene.T_W_I_keyframe, other, scene.rig)->residual.r_px;
+      return line_residual(scene.T_W_I, scene.T_W_I_keyframe, other, scene.rig.T_I_C, *scene.rig.camera)->residual.r_px;
     });
     EXPECT_LT((at->J_line - slope).norm(), 1e-4 * slope.norm());
     EXPECT_LT((at->residual.model_px2 - at->J_line * map.covariance_m2 * at->J_line.transpose()).norm(), 1e-9);
@@ -203,11 +207,11 @@ TEST(LineResidual, SaysNotMuchMoreInManyImagesThanTheLinesOwnDoubtAllows) {
   double information = 0.0;
   for (int image = 1; image <= 200; ++image) {
     line.line_K.sightings = image;
-    information +=
-        line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig)->residual.model_px2.inverse()(0, 0);
+    information += line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera)
+                       ->residual.model_px2.inverse()(0, 0);
   }
   line.line_K.sightings = 1;
-  const auto once = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
+  const auto once = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera);
   EXPECT_LT(information, 1.65 * once->residual.model_px2.inverse()(0, 0));
 }
 
@@ -224,7 +228,7 @@ TEST(LineResidual, IsThePapersFormulaWithoutDistortion) {
       const Vector3d s((px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy, 1.0);
       return camera.fx * s.dot(line_C.moment) / line_C.moment.head<2>().norm();
     };
-    const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig);
+    const auto at = line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera);
     EXPECT_NEAR(at->residual.r_px[0], distance_px(line.start_px), 1e-6);
     EXPECT_NEAR(at->residual.r_px[1], distance_px(line.end_px), 1e-6);
   }
@@ -242,8 +246,9 @@ TEST(LineResidual, IsTheDistanceInTheDistortedImage) {
       const Vector2d middle = *camera.project(T_C_K.act(p_K)), next = *camera.project(T_C_K.act(p_K + 1e-3 * d));
       const Vector2d along = (next - middle).normalized();
       line.start_px = middle + 1.5 * Vector2d(-along.y(), along.x());
-      EXPECT_NEAR(std::abs(line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig)->residual.r_px[0]), 1.5,
-                  0.02);
+      EXPECT_NEAR(std::abs(line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera)
+                               ->residual.r_px[0]),
+                  1.5, 0.02);
     }
 }
 
@@ -253,7 +258,7 @@ TEST(LineResidual, IsNothingOfALineThroughTheCamera) {
   LineObservation line = random_line(random, scene);
   const Vector3d camera_K = camera_from_keyframe(scene).inverse().translation();
   line.line_K = test::landmark_between(camera_K, camera_K + Vector3d(1.0, 2.0, 3.0), 0.02);
-  EXPECT_FALSE(line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig));
+  EXPECT_FALSE(line_residual(scene.T_W_I, scene.T_W_I_keyframe, line, scene.rig.T_I_C, *scene.rig.camera));
 }
 
 }  // namespace

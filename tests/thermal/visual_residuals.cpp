@@ -22,7 +22,11 @@ struct Corridor {
   NavState now;
   std::vector<SE3> keyframes;
   ImageObservations seen;
+
+  CameraMount mount() const { return {.T_I_C = rig.T_I_C}; }
 };
+
+constexpr Eigen::Index kJoint = joint_index::clone(3);
 
 struct Noise {
   double pixel_px = 1.0, depth_m = 0.03, line_m = 0.01;
@@ -108,26 +112,42 @@ SE3 moved(const SE3& T_W_I, const Vector6& error) {
   return pose_from(T_W_I.asSO3() * exp_so3(error.head<3>()), T_W_I.translation() + error.tail<3>());
 }
 
-/// A joint error applied to state and keyframes.
-void move(NavState& now, std::vector<SE3>& keyframes, const VectorXd& error) {
-  now = boxplus(now, error.head<18>());
-  for (std::size_t k = 0; k < keyframes.size(); ++k)
-    keyframes[k] = moved(keyframes[k], error.segment<6>(18 + 6 * static_cast<Eigen::Index>(k)));
+/// What a joint error is added to.
+struct Point {
+  NavState now;
+  CameraMount mount;
+  std::vector<SE3> keyframes;
+};
+
+Point point_of(const Corridor& corridor) { return {corridor.now, corridor.mount(), corridor.keyframes}; }
+
+Point moved(Point point, const VectorXd& error) {
+  point.now = boxplus(point.now, error.head<18>());
+  point.mount = boxplus(point.mount, error.segment<mount_index::size>(joint_index::mount));
+  for (std::size_t k = 0; k < point.keyframes.size(); ++k)
+    point.keyframes[k] = moved(point.keyframes[k], error.segment<6>(joint_index::clone(k)));
+  return point;
+}
+
+JointEquations linearized(const Point& at, const Corridor& corridor, const VisualConfig& config,
+                          const MatrixXd& search = {}) {
+  return linearize_image(at.now, at.mount, at.keyframes, corridor.seen, *corridor.rig.camera, config, search);
 }
 
 TEST(VisualResiduals, GradientMatchesCentralDifferencesOfTheCost) {
   Random random(31);
   // Without doubt about depths and lines, whose say in the noise changes with the pose.
   Corridor corridor = corridor_of(random, {.depth_m = 0.0, .line_m = 0.0, .false_share = 0.2});
+  corridor.now.v_W = Vector3d(1.5, 0.2, -0.1);
+  corridor.seen.rate_I = Vector3d(0.3, -0.2, 0.8);
   const VisualConfig config{.gate = 1e9, .max_information = 0.0};
-  const JointEquations at = linearize_image(corridor.now, corridor.keyframes, corridor.seen, corridor.rig, config);
+  Point point = point_of(corridor);
+  point.mount.delay_s = 0.003;
+  const JointEquations at = linearized(point, corridor, config);
   EXPECT_EQ(at.inliers, 126);
-  for (int i = 0; i < 36; ++i) {
+  for (Eigen::Index i = 0; i < kJoint; ++i) {
     const auto cost = [&](double step) {
-      NavState now = corridor.now;
-      std::vector<SE3> keyframes = corridor.keyframes;
-      move(now, keyframes, step * VectorXd::Unit(36, i));
-      return linearize_image(now, keyframes, corridor.seen, corridor.rig, config).cost;
+      return linearized(moved(point, step * VectorXd::Unit(kJoint, i)), corridor, config).cost;
     };
     const double slope = (cost(1e-6) - cost(-1e-6)) / 2e-6;
     EXPECT_NEAR(slope, -2.0 * at.b[i], 1e-4 * at.b.norm()) << i;
@@ -139,13 +159,15 @@ TEST(VisualResiduals, InformationIsThatOfAllResidualsStackedUp) {
   const Corridor corridor = corridor_of(random, {.depth_m = 0.0, .line_m = 0.0});
   const VisualConfig config{
       .point_sigma_px = 1.3, .line_sigma_px = 1.3, .loss = 1e6, .max_information = 0.0, .weights = false};
-  const JointEquations at = linearize_image(corridor.now, corridor.keyframes, corridor.seen, corridor.rig, config);
+  const JointEquations at =
+      linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera, config);
   // One residual at a time: b of a problem with one residual r and weight W is -J'Wr, squared is r'Wr.
-  MatrixXd H = MatrixXd::Zero(36, 36);
-  VectorXd b = VectorXd::Zero(36);
+  MatrixXd H = MatrixXd::Zero(kJoint, kJoint);
+  VectorXd b = VectorXd::Zero(kJoint);
   double cost = 0.0;
   const auto add = [&](const ImageObservations& one) {
-    const JointEquations part = linearize_image(corridor.now, corridor.keyframes, one, corridor.rig, config);
+    const JointEquations part =
+        linearize_image(corridor.now, corridor.mount(), corridor.keyframes, one, *corridor.rig.camera, config);
     H += part.H;
     b += part.b;
     cost += part.cost;
@@ -158,12 +180,13 @@ TEST(VisualResiduals, InformationIsThatOfAllResidualsStackedUp) {
   EXPECT_NEAR(at.squared, cost, 1e-6 * cost);  // with a loss so wide nothing is bounded
   // The slope of b is -H where residuals are small.
   const double step = 1e-6;
-  for (int i = 0; i < 36; ++i) {
-    NavState now = corridor.now;
-    std::vector<SE3> keyframes = corridor.keyframes;
-    move(now, keyframes, step * VectorXd::Unit(36, i));
-    const VectorXd slope = (at.b - linearize_image(now, keyframes, corridor.seen, corridor.rig, config).b) / step;
-    EXPECT_LT((slope - at.H.col(i)).norm(), 0.05 * at.H.col(i).norm() + 1e-9) << i;
+  for (Eigen::Index i = 0; i < kJoint; ++i) {
+    // A shift of the mount moves keyframe and image alike, so that its own rows are no larger than the residuals.
+    if (i >= joint_index::mount && i < joint_index::clones) continue;
+    const Point next = moved(point_of(corridor), step * VectorXd::Unit(kJoint, i));
+    VectorXd off = (at.b - linearized(next, corridor, config).b) / step - at.H.col(i);
+    off.segment<mount_index::size>(joint_index::mount).setZero();
+    EXPECT_LT(off.norm(), 0.05 * at.H.col(i).norm() + 1e-9) << i;
   }
 }
 
@@ -171,7 +194,7 @@ TEST(VisualResiduals, ClaimNoMoreInformationThanTheCap) {
   Random random(33);
   const Corridor corridor = corridor_of(random, {.depth_m = 0.0}, 40, 0);
   const auto with_cap = [&](double cap) {
-    return linearize_image(corridor.now, corridor.keyframes, corridor.seen, corridor.rig,
+    return linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera,
                            {.max_information = cap, .weights = false});
   };
   const JointEquations all = with_cap(0.0), some = with_cap(20.0);
@@ -187,7 +210,8 @@ TEST(VisualResiduals, LeaveThePointsTheirSayBesideLinesThatAreHardlyKnown) {
   Random random(38);
   Corridor corridor = corridor_of(random, {.line_m = 0.3}, 40, 60);
   const auto information = [&] {
-    return linearize_image(corridor.now, corridor.keyframes, corridor.seen, corridor.rig, {}).H.trace();
+    return linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera, {})
+        .H.trace();
   };
   const double with_lines = information();
   corridor.seen.lines.clear();
@@ -199,16 +223,18 @@ TEST(VisualResiduals, GateIsAsWideAsThePredictionIsUnsure) {
   Corridor corridor = corridor_of(random, {});
   corridor.now.p_W.x() += 0.5;  // tens of pixels
   const auto inliers = [&](const MatrixXd& search) {
-    return linearize_image(corridor.now, corridor.keyframes, corridor.seen, corridor.rig, {}, search).inliers;
+    return linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera, {},
+                           search)
+        .inliers;
   };
-  MatrixXd unsure = MatrixXd::Zero(36, 36);
+  MatrixXd unsure = MatrixXd::Zero(kJoint, kJoint);
   EXPECT_LT(inliers(unsure), 60);
   unsure(3, 3) = 0.25;
   EXPECT_GT(inliers(unsure), 120);
   // A keyframe that shares the doubt takes it away again.
-  for (const int i : {21, 27, 33}) unsure(3, i) = unsure(i, 3) = unsure(i, i) = 0.25;
-  for (const int i : {21, 27, 33})
-    for (const int j : {21, 27, 33}) unsure(i, j) = 0.25;
+  const Eigen::Index along[] = {3, joint_index::clone(0) + 3, joint_index::clone(1) + 3, joint_index::clone(2) + 3};
+  for (const Eigen::Index i : along)
+    for (const Eigen::Index j : along) unsure(i, j) = 0.25;
   corridor.seen.lines.clear();
   EXPECT_LT(inliers(unsure), 60);
 }
@@ -217,7 +243,9 @@ TEST(VisualResiduals, LeaveOutLinesThatTurnedOrRunThroughTheCamera) {
   Random random(35);
   Corridor corridor = corridor_of(random, {}, 0, 1);
   const auto inliers = [&] {
-    return linearize_image(corridor.now, corridor.keyframes, corridor.seen, corridor.rig, {.gate = 1e9}).inliers;
+    return linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera,
+                           {.gate = 1e9})
+        .inliers;
   };
   EXPECT_EQ(inliers(), 1);
   LineObservation& line = corridor.seen.lines[0];
@@ -257,7 +285,8 @@ TEST(NearestOfEach, KeepsTheEdgeThatLiesWhereTheLineOfTheMapIsSeen) {
   parallel.start_px.x() += 6.0;
   parallel.end_px.x() += 6.0;
   lines.insert(lines.begin(), parallel);
-  const auto kept = nearest_of_each(lines, corridor.now.T_W_I(), corridor.keyframes, corridor.rig);
+  const auto kept =
+      nearest_of_each(lines, corridor.now.T_W_I(), corridor.keyframes, corridor.rig.T_I_C, *corridor.rig.camera);
   ASSERT_EQ(kept.size(), 3);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(kept[i].start_px, right[kept[i].line_K.id].start_px);
 }
@@ -271,15 +300,16 @@ TEST(KeyframeNoise, IsTheSpreadOfPosesThatNoisyKeyframesShow) {
   corridor.now.p_W = corridor.keyframes[0].translation();
   std::vector<Vector3d> points_K;
   for (const PointObservation& point : corridor.seen.points) points_K.push_back(point.p_K_m);
-  const Matrix6 claimed = keyframe_noise(points_K, corridor.rig, 0.7);
+  const Matrix6 claimed = keyframe_noise(points_K, corridor.rig.T_I_C, *corridor.rig.camera, 0.7);
 
   Matrix6 spread = Matrix6::Zero();
   const int trials = 400;
   for (int trial = 0; trial < trials; ++trial) {
     for (PointObservation& point : corridor.seen.points)
       point.observed_px = *corridor.rig.camera->project(point.p_K_m) + pixel_noise(random, {.pixel_px = 0.7});
-    const JointEquations at = linearize_image(corridor.now, corridor.keyframes, corridor.seen, corridor.rig,
-                                              {.loss = 1e6, .gate = 1e9, .max_information = 0.0, .weights = false});
+    const JointEquations at =
+        linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera,
+                        {.loss = 1e6, .gate = 1e9, .max_information = 0.0, .weights = false});
     const Vector6 shown = at.H.topLeftCorner<6, 6>().ldlt().solve(at.b.head<6>());
     spread += shown * shown.transpose() / trials;
   }
@@ -292,33 +322,31 @@ struct Update {
   MatrixXd covariance;
   JointEquations last;
 };
-Update update(const NavState& prior, const std::vector<SE3>& keyframes, const MatrixXd& covariance,
-              const Corridor& corridor, const VisualConfig& config) {
-  Update result{.moved = VectorXd::Zero(36), .covariance = covariance, .last = JointEquations(3)};
-  const MatrixXd information = covariance.inverse();
+Update update(const Point& prior, const MatrixXd& covariance, const Corridor& corridor, const VisualConfig& config) {
+  Update result{.moved = VectorXd::Zero(kJoint), .covariance = covariance, .last = JointEquations(3)};
   for (int i = 0; i < 10; ++i) {
-    NavState now = prior;
-    std::vector<SE3> poses = keyframes;
-    move(now, poses, result.moved);
-    result.last = linearize_image(now, poses, corridor.seen, corridor.rig, config, covariance);
-    result.covariance = (information + result.last.H).inverse();
-    result.moved += result.covariance * (result.last.b - information * result.moved);
+    result.last = linearized(moved(prior, result.moved), corridor, config, covariance);
+    const Eigen::PartialPivLU<MatrixXd> system(MatrixXd::Identity(kJoint, kJoint) + covariance * result.last.H);
+    result.covariance = system.solve(covariance);
+    result.moved += system.solve(covariance * result.last.b - result.moved);
   }
   return result;
 }
 
 /// What the LiDAR leaves: keyframes that drifted apart a little, and a present pose that slid along the corridor.
 struct Prior {
-  MatrixXd root = MatrixXd::Zero(36, 36);  ///< of the covariance
+  MatrixXd root = MatrixXd::Zero(kJoint, kJoint);  ///< of the covariance
 
   explicit Prior(double turn_rad, double shift_m) {
-    const auto block = [&](int row, int column) { return root.block<6, 6>(row, column); };
+    const auto block = [&](Eigen::Index row, Eigen::Index column) { return root.block<6, 6>(row, column); };
     Vector6 sigmas;
     sigmas << Vector3d::Constant(turn_rad), Vector3d::Constant(shift_m);
     const Matrix6 step = sigmas.asDiagonal();
-    block(18, 18) = block(24, 18) = block(30, 18) = block(0, 18) = step;
-    block(24, 24) = block(30, 24) = block(0, 24) = step;
-    block(30, 30) = block(0, 30) = step;
+    for (const std::size_t older : {0, 1, 2}) {
+      const Eigen::Index from = joint_index::clone(older);
+      block(0, from) = step;
+      for (std::size_t k = older; k < 3; ++k) block(joint_index::clone(k), from) = step;
+    }
     sigmas[3] = 0.3;
     block(0, 0) = sigmas.asDiagonal();
     root.block<12, 12>(6, 6) = 0.01 * Eigen::Matrix<double, 12, 12>::Identity();
@@ -338,14 +366,11 @@ Consistency simulate(const Noise& noise, const VisualConfig& config, unsigned se
   for (int trial = 0; trial < trials; ++trial) {
     Random random(seed + static_cast<unsigned>(trial));
     Corridor corridor = corridor_of(random, noise);
-    NavState now = corridor.now;
-    std::vector<SE3> keyframes = corridor.keyframes;
-    const VectorXd offset = prior.root * VectorXd::NullaryExpr(36, [&] { return random.normal(); });
-    move(now, keyframes, offset);
+    const VectorXd offset = prior.root * VectorXd::NullaryExpr(kJoint, [&] { return random.normal(); });
     corridor.rig.T_I_C = corridor.rig.T_I_C * wrong_extrinsic;
-    const Update result = update(now, keyframes, prior.covariance(), corridor, config);
-    move(now, keyframes, result.moved);
-    const Vector6 error = boxminus(now, corridor.now).head<6>();
+    const Point before = moved(point_of(corridor), offset);
+    const Update result = update(before, prior.covariance(), corridor, config);
+    const Vector6 error = boxminus(moved(before, result.moved).now, corridor.now).head<6>();
     mean.normalised += error.cwiseAbs2().cwiseQuotient(result.covariance.diagonal().head<6>()) / trials;
     mean.rms_along_m += error[3] * error[3] / trials;
     const Innovation shown = innovation(result.last, result.moved, prior.covariance());

@@ -23,6 +23,8 @@ void list_vision(Section section, VisionConfig& config) {
               "How well the camera's attitude on the rig is known, one sigma; it is refined.", "deg", {1e-4, 20.0});
   section.add(PLLIT_KEY(T_I_C_shift_m), "How well its place on the rig is known, one sigma; it is refined.", "m",
               {1e-5, 1.0});
+  section.add(PLLIT_KEY(delay_sigma_s),
+              "How well the camera's delay is known, one sigma; it is refined. 0: it is right.", "s", {0.0, 1.0});
   section.add(PLLIT_KEY(depth_window_s), "LiDAR points that give features their depth are at most so old.", "s",
               {0.05, 30.0});
   section.add(PLLIT_KEY(most_misfit),

@@ -15,15 +15,22 @@
 
 namespace pllit {
 
+/// A camera's mount with the covariance of its errors.
+struct RefinedMount {
+  CameraMount mean;
+  Matrix7 covariance = Matrix7::Zero();
+};
+
 /// The estimate at the end of one packet, and what led to it.
 struct FrameEstimate {
   Estimate posterior;        ///< its covariance holds against the map around the robot
   Matrix6 drift_covariance;  ///< of that map against the origin, (theta, p) in W
   Health health;
   FrameFacts facts;
-  PointCloud cloud;                                 ///< the scan's points in I, de-skewed; empty without a scan
-  std::optional<CameraFrame> image = std::nullopt;  ///< of this moment, where images are looked at ...
-  SE3 T_I_C = SE3::Identity();                      ///< ... and the camera's pose on the rig, as refined so far
+  PointCloud cloud;                                  ///< the scan's points in I, de-skewed; empty without a scan
+  std::optional<CameraFrame> image = std::nullopt;   ///< of this moment, where images are looked at ...
+  std::optional<RefinedMount> mount = std::nullopt;  ///< ... how its camera is tied to the rig, as refined so far ...
+  SE3 T_I_C = SE3::Identity();  ///< ... and where the camera was when it took it, seen from I of this moment
   StageTimes stage_ms{};
 
   /// The cloud's points in W.

@@ -90,6 +90,7 @@ class Run {
     ++summary_.frames;
     ++summary_.health[static_cast<std::size_t>(frame.health.state)];
     summary_.final_state = frame.health.state;
+    if (frame.mount) summary_.mount = frame.mount;
     double total_ms = 0.0;
     for (std::size_t i = 0; i < stage_names.size(); ++i) {
       summary_.stage_ms[i].add(frame.stage_ms[i]);

@@ -27,6 +27,7 @@ struct RunSummary {
   HealthState final_state = HealthState::initialising;
   std::vector<std::string> notes;  ///< what was noticed, each once
   std::optional<Start> start;
+  std::optional<RefinedMount> mount;  ///< of the camera, at the end; none without images
   bool interrupted = false;
 
   double real_time_factor() const { return wall_s > 0.0 ? duration_s / wall_s : 0.0; }

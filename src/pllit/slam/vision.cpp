@@ -21,11 +21,11 @@ double cosine_of_corner(const Camera& camera) {
   return std::cos(std::min(angle + margin_rad, M_PI));
 }
 
-Matrix6 camera_covariance(const VisionConfig& config) {
-  const double turn_rad = config.T_I_C_turn_deg * M_PI / 180.0;
-  Vector6 variances;
-  variances << Vector3d::Constant(turn_rad * turn_rad), Vector3d::Constant(config.T_I_C_shift_m * config.T_I_C_shift_m);
-  return variances.asDiagonal();
+Matrix7 prior_of_mount(const VisionConfig& config) {
+  Vector7 sigmas;
+  sigmas << Vector3d::Constant(config.T_I_C_turn_deg * M_PI / 180.0), Vector3d::Constant(config.T_I_C_shift_m),
+      config.delay_sigma_s;
+  return sigmas.cwiseAbs2().asDiagonal();
 }
 
 Expected<std::unique_ptr<FeatureExtractor>> make_extractor(const VisionConfig& config) {
@@ -45,7 +45,7 @@ Vision::Vision(const Rig& rig, const VisionConfig& config, std::unique_ptr<Featu
       extractor_(std::move(extractor)),
       least_cos_(cosine_of_corner(*rig.camera)),
       lines_(config.lines),
-      clones_(with_unknown(rig.T_I_C, camera_covariance(config))) {}
+      clones_(without_poses({.T_I_C = rig.T_I_C}, prior_of_mount(config))) {}
 
 void Vision::look_at(const CameraFrame& image) {
   looking_ = std::async(std::launch::async, [this, image] { return look(image); });
@@ -72,11 +72,19 @@ Expected<Vision::Look> Vision::look(const CameraFrame& image) const {
   return look;
 }
 
+/// No clock keeps its distance to another for ever.
+void Vision::let_clocks_drift(Time time) {
+  constexpr double drift_s2_per_s = 1e-10;  // 0.08 ms in a minute, 0.6 ms in an hour, one sigma
+  double& variance = clones_.covariance(mount_index::delay, mount_index::delay);
+  if (mount_time_ != Time{}) variance += drift_s2_per_s * std::max(0.0, to_seconds(time - mount_time_));
+  mount_time_ = time;
+}
+
 bool Vision::is_calibrated(const Look& look) const { return config_.photometric && look.counts.depth() == CV_8U; }
 
 void Vision::add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time) {
   while (!points_.empty() && to_seconds(time - points_.front().time) > config_.depth_window_s) points_.pop_front();
-  const SE3 T_C_I = T_I_C().inverse();
+  const SE3 T_C_I = mount().T_I_C.inverse();
   const Eigen::Matrix3f R_C_I = T_C_I.rotation().cast<float>();
   const Vector3f p_C_I = T_C_I.translation().cast<float>();
   const Matrix3d R_W_I = T_W_I.rotation();
@@ -89,8 +97,8 @@ void Vision::add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I,
   points_.push_back(std::move(seen));
 }
 
-Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prior,
-                                  const std::optional<StateDirections>& open, ImageFacts& facts, StageClock& clock) {
+Expected<Estimate> Vision::refine(const CameraFrame& image, const Moment& moment, ImageFacts& facts,
+                                  StageClock& clock) {
   assert(looking_.valid());
   auto look = looking_.get();
   clock.charge(Stage::features);
@@ -98,12 +106,13 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prio
   if (!look) return std::unexpected(look.error());
   history_ = remembered(image, look->verdict, history_);
   facts.refused = look->verdict.reason;
-  if (!look->verdict.usable()) return prior;
+  if (!look->verdict.usable()) return moment.prior;
   range_ = look->range;
   facts.points = static_cast<int>(look->features.points_px.size());
 
-  const SE3 T_W_C = prior.mean.T_W_I() * T_I_C();
-  for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].T_W_C = clones_.poses[i + 1] * T_I_C();
+  let_clocks_drift(image.time);
+  const SE3 T_W_C = exposure(moment.prior.mean, mount().delay_s, moment.rate_I).T_W_I * mount().T_I_C;
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].T_W_C = clones_.poses[i] * mount().T_I_C;
   const Tracks tracks = match_to_keyframes(look->features, T_W_C, keyframes_, *rig_.camera, config_.matching);
   facts.matches = static_cast<int>(tracks.points.size());
   facts.anchored = static_cast<int>(std::ranges::count_if(tracks.points, [](const auto& m) { return m.line_px >= 0; }));
@@ -116,18 +125,19 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Estimate& prio
   facts.bias_grey = chain_.curve.bias;
   clock.charge(Stage::photometric);
 
-  const Estimate posterior = update(prior, open, observe(look->features, tracks, prior.mean.T_W_I()), facts);
-  extend_maps(std::move(*look), tracks, image.time, posterior);
+  const Estimate posterior = update(moment, observe(look->features, tracks, moment), facts);
+  extend_maps(std::move(*look), tracks, posterior, exposure(posterior.mean, mount().delay_s, moment.rate_I));
   clock.charge(Stage::thermal);
   return posterior;
 }
 
 /// Sightings of lines, and a keyframe, where it is time for them: both need the depth of what the image shows.
-void Vision::extend_maps(Look look, const Tracks& tracks, Time time, const Estimate& posterior) {
+void Vision::extend_maps(Look look, const Tracks& tracks, const Estimate& posterior, const Exposure& exposed) {
+  const Time time = posterior.mean.time;
   const bool keyframe = wants_keyframe(tracks, keyframes_, look.features, time, rig_.camera->width, config_.keyframes);
   const bool lines = config_.residuals.lines && (keyframe || time - lines_seen_ >= config_.line_spacing);
   if (!keyframe && !lines) return;
-  const SE3 T_W_C = posterior.mean.T_W_I() * T_I_C();
+  const SE3 T_W_C = exposed.T_W_I * mount().T_I_C;
   const DepthImage depths = depths_at(T_W_C);
   if (lines) {
     lines_.add(look.features, tracks, depths, T_W_C, *rig_.camera);
@@ -135,11 +145,11 @@ void Vision::extend_maps(Look look, const Tracks& tracks, Time time, const Estim
   }
   if (!keyframe) return;
   if (std::ssize(keyframes_) >= config_.keyframes.most) drop_keyframe(expendable(tracks, keyframes_));
-  keep(std::move(look), depths, time, posterior);
+  keep(std::move(look), depths, posterior, exposed);
 }
 
-ImageObservations Vision::observe(const Features& features, const Tracks& tracks, const SE3& T_W_I) const {
-  ImageObservations observations;
+ImageObservations Vision::observe(const Features& features, const Tracks& tracks, const Moment& moment) const {
+  ImageObservations observations{.rate_I = moment.rate_I, .points = {}, .lines = {}};
   for (const PointMatch& match : tracks.points) {
     const Keyframe& keyframe = keyframes_[match.keyframe];
     const auto reference = static_cast<std::size_t>(match.reference);
@@ -153,12 +163,10 @@ ImageObservations Vision::observe(const Features& features, const Tracks& tracks
          .observed_px = features.points_px[static_cast<std::size_t>(match.current)].cast<double>(),
          .line_px = match.line_px});
   }
-  if (config_.residuals.lines) {
-    Rig rig = rig_;
-    rig.T_I_C = T_I_C();
-    observations.lines =
-        nearest_of_each(lines_.observed(features, tracks, keyframes_), T_W_I, std::span(clones_.poses).subspan(1), rig);
-  }
+  if (config_.residuals.lines)
+    observations.lines = nearest_of_each(lines_.observed(features, tracks, keyframes_),
+                                         exposure(moment.prior.mean, mount().delay_s, moment.rate_I).T_W_I,
+                                         clones_.poses, mount().T_I_C, *rig_.camera);
   return observations;
 }
 
@@ -169,25 +177,20 @@ DepthImage Vision::depths_at(const SE3& T_W_C) const {
 }
 
 /// Stage II of the paper's sequential filter; an image whose innovation contradicts the prior is not believed at all.
-Estimate Vision::update(const Estimate& prior, const std::optional<StateDirections>& open,
-                        const ImageObservations& observations, ImageFacts& facts) {
+Estimate Vision::update(const Moment& moment, const ImageObservations& observations, ImageFacts& facts) {
+  const Estimate& prior = moment.prior;
   const Eigen::MatrixXd covariance = joint_covariance(prior, clones_);
-  Rig rig = rig_;
-  const auto linearize = [&](const NavState& state, std::span<const SE3> poses) {
-    rig.T_I_C = poses.front();
-    return linearize_image(state, poses.subspan(1), observations, rig, config_.residuals, covariance,
-                           CameraPose::unknown);
+  const auto linearize = [&](const NavState& state, const CameraMount& mount) {
+    return linearize_image(state, mount, clones_.poses, observations, *rig_.camera, config_.residuals, covariance);
   };
-  JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{}, open);
+  JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{}, moment.open);
   facts.lines = static_cast<int>(observations.lines.size());
   facts.candidates = result.last.candidates;
   facts.inliers = result.last.inliers;
   if (facts.inliers < config_.least_inliers) return prior;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(covariance.rows());
-  moved.head<error_index::size>() = boxminus(result.posterior.mean, prior.mean);
-  const SE3& refined = result.clones.poses.front();
-  moved.segment<3>(error_index::size) = log_so3(T_I_C().asSO3().inverse() * refined.asSO3());
-  moved.segment<3>(error_index::size + 3) = refined.translation() - T_I_C().translation();
+  moved.head<joint_index::clones>() << boxminus(result.posterior.mean, prior.mean),
+      boxminus(result.clones.mount, mount());
   const Innovation news = innovation(result.last, moved, covariance);
   facts.misfit = news.misfit;
   if (news.misfit > config_.most_misfit) {
@@ -202,8 +205,8 @@ Estimate Vision::update(const Estimate& prior, const std::optional<StateDirectio
   return result.posterior;
 }
 
-void Vision::keep(Look look, const DepthImage& depths, Time time, const Estimate& posterior) {
-  Keyframe keyframe{.id = next_id_++, .time = time, .T_W_C = posterior.mean.T_W_I() * T_I_C()};
+void Vision::keep(Look look, const DepthImage& depths, const Estimate& posterior, const Exposure& exposed) {
+  Keyframe keyframe{.id = next_id_++, .time = posterior.mean.time, .T_W_C = exposed.T_W_I * mount().T_I_C};
   keyframe.features = strongest(look.features, config_.keyframes.most_points);
   std::vector<Vector3d> points_K;
   for (const Eigen::Vector2f& pixel : keyframe.features.points_px) {
@@ -213,8 +216,9 @@ void Vision::keep(Look look, const DepthImage& depths, Time time, const Estimate
   }
   const cv::Mat around = look.around.rowRange(0, static_cast<int>(keyframe.features.points_px.size()));
   set_greys(keyframe, around, look.counts.depth() == CV_8U ? chain_.curve : GreyCurve{});
-  add_clone(clones_, posterior);
-  clones_.covariance.bottomRightCorner<6, 6>() += keyframe_noise(points_K, rig_, config_.residuals.point_sigma_px);
+  add_clone(clones_, posterior, exposed);
+  clones_.covariance.bottomRightCorner<6, 6>() +=
+      keyframe_noise(points_K, mount().T_I_C, *rig_.camera, config_.residuals.point_sigma_px);
   keyframes_.push_back(std::move(keyframe));
   if (config_.residuals.lines) lines_.keep();
 }
@@ -228,13 +232,13 @@ Expected<std::unique_ptr<Vision>> make_vision(const Rig& rig, const VisionConfig
 
 void Vision::drop_keyframe(std::size_t index) {
   keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(index));
-  remove_clone(clones_, index + 1);
+  remove_clone(clones_, index);
   if (config_.residuals.lines) lines_.drop(index);
 }
 
 void Vision::restart() {
   keyframes_.clear();
-  clones_ = with_unknown(T_I_C(), clones_.covariance.topLeftCorner<6, 6>());
+  clones_ = without_poses(mount(), clones_.mount_covariance());
   lines_.restart();
   points_.clear();
 }

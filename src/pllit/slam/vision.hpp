@@ -22,6 +22,12 @@ namespace pllit {
 
 class Vision {
  public:
+  /// What the odometry knows at an image's time.
+  struct Moment {
+    Estimate prior;
+    Vector3d rate_I = Vector3d::Zero();   ///< how the rig turns, rad/s
+    std::optional<StateDirections> open;  ///< directions that the scan has left open; nothing without a scan
+  };
   /// The rig must have a camera.
   Vision(const Rig& rig, const VisionConfig& config, std::unique_ptr<FeatureExtractor> extractor);
 
@@ -31,17 +37,16 @@ class Vision {
   void carry(const Matrix18& J_now_before) { pllit::carry(clones_, J_now_before); }
   /// LiDAR points in I at `time`: where features will find their depth.
   void add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time);
-  /// The state after this image; `prior` where it is of no use. `open`: directions that the scan has left open; nothing
-  /// without a scan. Where the scan knows the pose to millimetres, what a camera adds is mostly the error of its
-  /// calibration, so it moves the state along those only; its own pose on the rig it refines always. Errors are the
-  /// extractor's.
-  Expected<Estimate> refine(const CameraFrame& image, const Estimate& prior, const std::optional<StateDirections>& open,
-                            ImageFacts& facts, StageClock& clock);
+  /// The state after this image; the prior where it is of no use. Where the scan knows the pose to millimetres, what a
+  /// camera adds is mostly the error of its calibration, so it moves the state along what the scan has left open only;
+  /// its own mount it refines always. Errors are the extractor's.
+  Expected<Estimate> refine(const CameraFrame& image, const Moment& moment, ImageFacts& facts, StageClock& clock);
   /// Forgets what was built on poses that are not to be trusted any more.
   void restart();
 
   /// As refined so far.
-  const SE3& T_I_C() const { return clones_.poses.front(); }
+  const CameraMount& mount() const { return clones_.mount; }
+  Matrix7 mount_covariance() const { return clones_.mount_covariance(); }
 
  private:
   /// What is found in an image without knowing where it was taken.
@@ -53,13 +58,13 @@ class Vision {
     Features features{};
   };
   Expected<Look> look(const CameraFrame& image) const;
-  ImageObservations observe(const Features& features, const Tracks& tracks, const SE3& T_W_I) const;
+  ImageObservations observe(const Features& features, const Tracks& tracks, const Moment& moment) const;
   DepthImage depths_at(const SE3& T_W_C) const;
-  Estimate update(const Estimate& prior, const std::optional<StateDirections>& open,
-                  const ImageObservations& observations, ImageFacts& facts);
-  void extend_maps(Look look, const Tracks& tracks, Time time, const Estimate& posterior);
-  void keep(Look look, const DepthImage& depths, Time time, const Estimate& posterior);
+  Estimate update(const Moment& moment, const ImageObservations& observations, ImageFacts& facts);
+  void extend_maps(Look look, const Tracks& tracks, const Estimate& posterior, const Exposure& exposed);
+  void keep(Look look, const DepthImage& depths, const Estimate& posterior, const Exposure& exposed);
   bool is_calibrated(const Look& look) const;
+  void let_clocks_drift(Time time);
   void drop_keyframe(std::size_t index);
 
   Rig rig_;
@@ -73,7 +78,8 @@ class Vision {
   std::vector<Keyframe> keyframes_;
   LineTracks lines_;
   Time lines_seen_{};
-  Clones clones_;  ///< T_I_C, which is refined, then the poses of the keyframes in their order
+  Clones clones_;  ///< the mount, and the poses of the keyframes in their order
+  Time mount_time_{};
   struct SeenPoints {
     Time time;
     std::vector<Vector3f> points_W;

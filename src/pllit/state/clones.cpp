@@ -44,60 +44,54 @@ void keep_along(const std::optional<StateDirections>& along, MatrixXd& rows) {
   if (along) rows.topRows<ix::size>() = (*along * (along->transpose() * rows.topRows<ix::size>())).eval();
 }
 
-/// The state and the unknown poses together, as one point on their manifold.
+/// State and mount together, as one point on their manifold.
 struct Unknowns {
+  static constexpr Index kSize = ix::size + mount_index::size;
   NavState state;
-  std::vector<SE3> poses;  ///< all, of which the first `estimated` move
-  std::size_t estimated;
-
-  static Index begin_of(std::size_t pose) { return ix::size + kPose * static_cast<Index>(pose); }
-  Index size() const { return begin_of(estimated); }
+  CameraMount mount;
 
   void move(const VectorXd& step) {
     state = boxplus(state, step.head<ix::size>());
-    for (std::size_t i = 0; i < estimated; ++i)
-      poses[i] = pose_from(poses[i].asSO3() * exp_so3(step.segment<3>(begin_of(i))),
-                           poses[i].translation() + step.segment<3>(begin_of(i) + 3));
+    mount = boxplus(mount, step.segment<mount_index::size>(joint_index::mount));
   }
-  /// Errors by which this is away from `other`, zero for the poses that do not move.
-  VectorXd minus(const Unknowns& other) const {
-    VectorXd d = VectorXd::Zero(begin_of(poses.size()));
-    d.head<ix::size>() = boxminus(state, other.state);
-    for (std::size_t i = 0; i < estimated; ++i) {
-      d.segment<3>(begin_of(i)) = log_so3(other.poses[i].asSO3().inverse() * poses[i].asSO3());
-      d.segment<3>(begin_of(i) + 3) = poses[i].translation() - other.poses[i].translation();
-    }
+  /// Errors by which this is away from `other`.
+  Eigen::Matrix<double, kSize, 1> minus(const Unknowns& other) const {
+    Eigen::Matrix<double, kSize, 1> d;
+    d << boxminus(state, other.state), boxminus(mount, other.mount);
     return d;
-  }
-  /// Where the three errors of each moving rotation begin.
-  std::vector<Index> turns() const {
-    std::vector<Index> begins{ix::theta};
-    for (std::size_t i = 0; i < estimated; ++i) begins.push_back(begin_of(i));
-    return begins;
   }
 };
 
+/// Where the three errors of each rotation begin, each followed by its pose's shift.
+constexpr Index kTurns[] = {ix::theta, joint_index::mount + mount_index::theta};
+
 }  // namespace
 
-Clones with_unknown(const SE3& pose, const Matrix6& covariance) {
-  return {.poses = {pose}, .with_state = MatrixXd::Zero(ix::size, kPose), .covariance = covariance, .estimated = 1};
+Clones without_poses(const CameraMount& mount, const Matrix7& covariance) {
+  return {.mount = mount, .poses = {}, .covariance = covariance};
 }
 
-void add_clone(Clones& clones, const Estimate& estimate) {
+void add_clone(Clones& clones, const Estimate& estimate, const Exposure& exposed) {
+  constexpr int kMoves = 9;  // of the state's errors, those that the pose depends on
   const Index n = clones.covariance.rows();
-  const MatrixXd with_old = clones.with_state.topRows<kPose>();
-  clones.poses.push_back(estimate.mean.T_W_I());
+  // What the pose's error shares with the state's, the mount's and the older poses'.
+  const MatrixXd joint = joint_covariance(estimate, clones);
+  const MatrixXd with_joint =
+      exposed.J_state * joint.topRows<kMoves>() + exposed.J_delay * joint.row(ix::size + mount_index::delay);
+  const Matrix6 own = with_joint.leftCols<kMoves>() * exposed.J_state.transpose() +
+                      with_joint.col(ix::size + mount_index::delay) * exposed.J_delay.transpose();
+  clones.poses.push_back(exposed.T_W_I);
   clones.covariance.conservativeResize(n + kPose, n + kPose);
-  clones.covariance.bottomLeftCorner(kPose, n) = with_old;
-  clones.covariance.topRightCorner(n, kPose) = with_old.transpose();
-  clones.covariance.bottomRightCorner<kPose, kPose>() = estimate.covariance.topLeftCorner<kPose, kPose>();
+  clones.covariance.bottomLeftCorner(kPose, n) = with_joint.rightCols(n);
+  clones.covariance.topRightCorner(n, kPose) = with_joint.rightCols(n).transpose();
+  clones.covariance.bottomRightCorner<kPose, kPose>() = own;
   clones.with_state.conservativeResize(Eigen::NoChange, n + kPose);
-  clones.with_state.rightCols<kPose>() = estimate.covariance.leftCols<kPose>();
+  clones.with_state.rightCols<kPose>() = with_joint.leftCols<ix::size>().transpose();
 }
 
 void remove_clone(Clones& clones, std::size_t index) {
-  assert(index >= clones.estimated && index < clones.size());
-  const Index begin = kPose * static_cast<Index>(index);
+  assert(index < clones.size());
+  const Index begin = joint_index::clone(index) - ix::size;
   clones.poses.erase(clones.poses.begin() + static_cast<std::ptrdiff_t>(index));
   clones.with_state = without_columns(clones.with_state, begin);
   clones.covariance = without_columns(without_columns(clones.covariance, begin).transpose(), begin).transpose();
@@ -118,41 +112,42 @@ JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const L
                             const FilterConfig& config, const std::optional<StateDirections>& along) {
   JointUpdate result{.posterior = prior, .clones = clones};
   const MatrixXd joint_prior = joint_covariance(prior, clones);
-  const Unknowns before{prior.mean, clones.poses, clones.estimated};
+  const Unknowns before{prior.mean, clones.mount};
   Unknowns x = before;
   MatrixXd joint = joint_prior;
   while (result.iterations < config.max_iterations && !result.converged) {
-    result.last = linearize(x.state, x.poses);
+    result.last = linearize(x.state, x.mount);
     if (result.iterations++ == 0) result.first = result.last;
     if (result.last.inliers == 0)
       return {.posterior = prior, .clones = clones, .first = result.first, .last = result.last};
 
-    VectorXd d = x.minus(before);
+    VectorXd d = VectorXd::Zero(joint_prior.rows());  // the clones do not move
+    d.head<Unknowns::kSize>() = x.minus(before);
     MatrixXd P = joint_prior;
-    for (const Index begin : x.turns()) {
+    for (const Index begin : kTurns) {
       const Matrix3d J = right_jacobian(d.segment<3>(begin));
       d.segment<3>(begin) = (J * d.segment<3>(begin)).eval();
       turn(P, begin, J);
     }
     // (P^-1 + H) dx = b - P^-1 d, multiplied by P from the left so that P need not be inverted.
     const Eigen::PartialPivLU<MatrixXd> system(MatrixXd::Identity(P.rows(), P.cols()) + P * result.last.H);
-    MatrixXd moved = system.solve(P * result.last.b - d) + d, gain = system.solve(P).topRows(x.size());
+    MatrixXd moved = system.solve(P * result.last.b - d) + d, gain = system.solve(P).topRows<Unknowns::kSize>();
     keep_along(along, moved);
     keep_along(along, gain);
     const VectorXd step = moved.col(0) - d;
     joint = after_gain(P, gain, result.last.H);
     x.move(step);
-    for (const Index begin : x.turns()) turn(joint, begin, right_jacobian(step.segment<3>(begin)));
-    result.converged = std::ranges::all_of(x.turns(), [&](Index begin) {  // each followed by its pose's shift
+    for (const Index begin : kTurns) turn(joint, begin, right_jacobian(step.segment<3>(begin)));
+    result.converged = std::ranges::all_of(kTurns, [&](Index begin) {
       return step.segment<3>(begin).norm() < config.rotation_tolerance_rad &&
              step.segment<3>(begin + 3).norm() < config.position_tolerance_m;
     });
   }
-  if (linearize(x.state, x.poses).cost > result.first.cost)
+  if (linearize(x.state, x.mount).cost > result.first.cost)
     return {.posterior = prior, .clones = clones, .first = result.first, .last = result.last};
   joint = 0.5 * (joint + joint.transpose()).eval();
   result.posterior = {.mean = x.state, .covariance = joint.topLeftCorner<ix::size, ix::size>()};
-  result.clones.poses = std::move(x.poses);
+  result.clones.mount = x.mount;
   result.clones.with_state = joint.topRightCorner(ix::size, joint.cols() - ix::size);
   result.clones.covariance = joint.bottomRightCorner(joint.rows() - ix::size, joint.cols() - ix::size);
   return result;

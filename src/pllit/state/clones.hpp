@@ -11,42 +11,44 @@
 
 namespace pllit {
 
-/// n poses, errors (theta, p), right perturbation. The first `estimated` ones are unknowns as the state is: a sensor's
-/// pose on the rig. The others are poses of I in W as they were once estimated; they are considered, not improved
-/// (Schmidt 1966), so that what was built on them stays where it is.
+/// A camera's mount and the poses at which earlier images were exposed, of I in W. The mount is an unknown as the state
+/// is, but for what its covariance takes as known. The poses stay as they were once estimated; they are considered, not
+/// improved (Schmidt 1966), so that what was built on them stays where it is.
 struct Clones {
+  CameraMount mount;
   std::vector<SE3> poses;
-  Eigen::MatrixXd with_state{error_index::size, 0};  ///< 18 x 6n: covariance of the state's error with the poses'
-  Eigen::MatrixXd covariance{0, 0};                  ///< 6n x 6n: of the poses' errors
-  std::size_t estimated = 0;
+  /// Covariances in the order of joint_index: of the state's error with the others', and of those.
+  Eigen::MatrixXd with_state = Eigen::MatrixXd::Zero(error_index::size, mount_index::size);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(mount_index::size, mount_index::size);
 
   std::size_t size() const { return poses.size(); }
+  Matrix7 mount_covariance() const { return covariance.topLeftCorner<mount_index::size, mount_index::size>(); }
 };
 
-/// No poses yet but this one, which is to be estimated, with its covariance.
-Clones with_unknown(const SE3& pose, const Matrix6& covariance);
-/// The present pose as a further one.
-void add_clone(Clones& clones, const Estimate& estimate);
+/// No poses yet, and nothing known of the state that would say something of the mount.
+Clones without_poses(const CameraMount& mount, const Matrix7& covariance);
+/// A further pose: the exposure of an image at this state.
+void add_clone(Clones& clones, const Estimate& estimate, const Exposure& exposed);
 void remove_clone(Clones& clones, std::size_t index);
-/// The state's error has become `J_now_before` times what it was, plus noise that the poses know nothing of.
+/// The state's error has become `J_now_before` times what it was, plus noise that the others know nothing of.
 void carry(Clones& clones, const Matrix18& J_now_before);
-/// (18 + 6n) square.
+/// In the order of joint_index.
 Eigen::MatrixXd joint_covariance(const Estimate& estimate, const Clones& clones);
 
-/// A sensor's residuals linearised at a state and poses.
-using LinearizeJoint = std::function<JointEquations(const NavState&, std::span<const SE3> poses)>;
+/// A sensor's residuals linearised at a state and a mount.
+using LinearizeJoint = std::function<JointEquations(const NavState&, const CameraMount&)>;
 
 struct JointUpdate {
   Estimate posterior;
-  Clones clones;  ///< the unknown poses improved, the others the same; what they share with the posterior
+  Clones clones;                   ///< the mount improved, the poses the same; what they share with the posterior
   JointEquations first{}, last{};  ///< at the prior and at the last linearisation point
   int iterations = 0;
   bool converged = false;
 };
 
 /// As iterated_update, for measurements that relate the state to earlier poses: the gain is the one of the joint
-/// problem and is given to the state and the unknown poses. Measurements whose cost the steps do not lower return the
-/// prior. `along`: orthonormal columns; then the state's gain is kept to them, whatever the sensor says of other
+/// problem and is given to the state and the mount. Measurements whose cost the steps do not lower return the prior.
+/// `along`: orthonormal columns; then the state's gain is kept to them, whatever the sensor says of other
 /// directions.
 using StateDirections = Eigen::Matrix<double, error_index::size, Eigen::Dynamic>;
 JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const LinearizeJoint& linearize,

@@ -3,12 +3,18 @@
 
 #include <Eigen/Core>
 
-#include "pllit/state/nav_state.hpp"
+#include "pllit/state/camera_mount.hpp"
 
 namespace pllit {
 
-/// As NormalEquations, over the errors of the state (error_index) and then those of n earlier poses, six each (theta,
-/// p; right perturbation): H = J'WJ and b = -J'Wr of size 18 + 6 n.
+/// Order of the joint error: the state's (error_index), the camera mount's (mount_index), then those of n earlier
+/// poses, six each (theta, p; right perturbation).
+namespace joint_index {
+inline constexpr int mount = error_index::size, clones = mount + mount_index::size;
+constexpr Eigen::Index clone(std::size_t i) { return clones + error_index::pose_size * static_cast<Eigen::Index>(i); }
+}  // namespace joint_index
+
+/// As NormalEquations, over the joint error: H = J'WJ and b = -J'Wr.
 struct JointEquations {
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
@@ -19,10 +25,8 @@ struct JointEquations {
   int inliers = 0;        ///< residuals that count
 
   explicit JointEquations(std::size_t poses = 0)
-      : H(Eigen::MatrixXd::Zero(size_for(poses), size_for(poses))), b(Eigen::VectorXd::Zero(size_for(poses))) {}
-  static Eigen::Index size_for(std::size_t poses) {
-    return error_index::size + error_index::pose_size * static_cast<Eigen::Index>(poses);
-  }
+      : H(Eigen::MatrixXd::Zero(joint_index::clone(poses), joint_index::clone(poses))),
+        b(Eigen::VectorXd::Zero(joint_index::clone(poses))) {}
 };
 
 /// The normalised innovation squared of an update, in its two parts, each over its mean: near 1 where prior, model and
@@ -33,8 +37,8 @@ struct Innovation {
   double misfit = 1.0, correction = 1.0;
 };
 
-/// `at_end`: linearised where the update ended, `moved`: the errors from the prior to there, `prior`: (18 + 6n) square
-/// covariance.
+/// `at_end`: linearised where the update ended, `moved`: the errors from the prior to there, `prior`: covariance of
+/// the joint error.
 Innovation innovation(const JointEquations& at_end, const Eigen::VectorXd& moved, const Eigen::MatrixXd& prior);
 
 }  // namespace pllit

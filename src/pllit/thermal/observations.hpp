@@ -27,6 +27,7 @@ struct LineObservation {
 
 /// Everything that one image offers to the update.
 struct ImageObservations {
+  Vector3d rate_I = Vector3d::Zero();  ///< how the rig turns at the image's time, rad/s
   std::vector<PointObservation> points;
   std::vector<LineObservation> lines;
 };

@@ -85,14 +85,14 @@ Distance distance_from(const EndPoint& end, const Vector3d& n_C) {
 }  // namespace
 
 std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_keyframe,
-                                            const PointObservation& observation, const Rig& rig) {
-  assert(rig.camera);
-  const Matrix3d R_I_W = T_W_I.rotation().transpose(), R_C_I = rig.T_I_C.rotation().transpose();
+                                            const PointObservation& observation, const SE3& T_I_C,
+                                            const Camera& camera) {
+  const Matrix3d R_I_W = T_W_I.rotation().transpose(), R_C_I = T_I_C.rotation().transpose();
   const Matrix3d R_W_K = T_W_I_keyframe.rotation();
-  const Vector3d point_K = rig.T_I_C.act(observation.p_K_m);  // in I of the keyframe
+  const Vector3d point_K = T_I_C.act(observation.p_K_m);  // in I of the keyframe
   const Vector3d point_I = R_I_W * (R_W_K * point_K + (T_W_I_keyframe.translation() - T_W_I.translation()));
-  const Vector3d point_C = R_C_I * (point_I - rig.T_I_C.translation());
-  const auto projection = rig.camera->project_with_slope(point_C);
+  const Vector3d point_C = R_C_I * (point_I - T_I_C.translation());
+  const auto projection = camera.project_with_slope(point_C);
   if (!projection) return std::nullopt;
 
   const Eigen::Matrix<double, 2, 3> J_pixel_I = projection->J_pixel_point * R_C_I;
@@ -101,22 +101,22 @@ std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_k
   residual.r_px = observation.observed_px - projection->pixel_px;
   residual.J_now << -J_pixel_I * skew(point_I), J_pixel_W;
   residual.J_keyframe << J_pixel_W * R_W_K * skew(point_K), -J_pixel_W;
-  const Matrix3d R_I_K = R_I_W * R_W_K, R_C_K = R_C_I * R_I_K * rig.T_I_C.rotation();
+  const Matrix3d R_I_K = R_I_W * R_W_K, R_C_K = R_C_I * R_I_K * T_I_C.rotation();
   residual.J_camera << -projection->J_pixel_point * (skew(point_C) - R_C_K * skew(observation.p_K_m)),
       -J_pixel_I * (R_I_K - Matrix3d::Identity());
   const Vector2d per_sigma =
-      J_pixel_W * (R_W_K * (rig.T_I_C.rotation() * observation.p_K_m.normalized())) * observation.sigma_ray_m;
+      J_pixel_W * (R_W_K * (T_I_C.rotation() * observation.p_K_m.normalized())) * observation.sigma_ray_m;
   residual.model_px2 = per_sigma * per_sigma.transpose();
   return residual;
 }
 
 std::optional<LineResidual> line_residual(const SE3& T_W_I, const SE3& T_W_I_keyframe,
-                                          const LineObservation& observation, const Rig& rig) {
-  assert(rig.camera && observation.line_K.half_length_m > 0.0);
-  const auto start = undistorted(observation.start_px, *rig.camera);
-  const auto end = undistorted(observation.end_px, *rig.camera);
+                                          const LineObservation& observation, const SE3& T_I_C, const Camera& camera) {
+  assert(observation.line_K.half_length_m > 0.0);
+  const auto start = undistorted(observation.start_px, camera);
+  const auto end = undistorted(observation.end_px, camera);
   if (!start || !end) return std::nullopt;
-  const InterpretationPlane plane = interpretation_plane(T_W_I, T_W_I_keyframe, observation.line_K, rig.T_I_C);
+  const InterpretationPlane plane = interpretation_plane(T_W_I, T_W_I_keyframe, observation.line_K, T_I_C);
   constexpr double least_distance_m = 1e-3;  // the length of the moment: a camera on the line itself sees no plane
   const double distance_m = plane.n_C.norm(), sin_plane = plane.n_C.head<2>().norm() / distance_m;
   if (!(distance_m > least_distance_m) || !(sin_plane > 1e-6)) return std::nullopt;

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "pllit/sensor/rig.hpp"
+#include "pllit/geometry/camera.hpp"
 #include "pllit/state/nav_state.hpp"
 #include "pllit/thermal/observations.hpp"
 
@@ -23,7 +23,8 @@ struct ImageResidual {
 /// The paper's reprojection residual, in pixels of the distorted image: the derivative is the distorted model's, so an
 /// even noise of the detector stays even. Nothing where the camera does not see the point.
 std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_keyframe,
-                                            const PointObservation& observation, const Rig& rig);
+                                            const PointObservation& observation, const SE3& T_I_C,
+                                            const Camera& camera);
 
 /// How a line lies in an image, beside its residual.
 struct LineResidual {
@@ -38,6 +39,6 @@ struct LineResidual {
 /// length. Nothing where an end point's ray is 85 degrees or more off the axis, or the plane through camera and line is
 /// parallel to the image.
 std::optional<LineResidual> line_residual(const SE3& T_W_I, const SE3& T_W_I_keyframe,
-                                          const LineObservation& observation, const Rig& rig);
+                                          const LineObservation& observation, const SE3& T_I_C, const Camera& camera);
 
 }  // namespace pllit

@@ -12,17 +12,12 @@
 
 namespace pllit {
 
-namespace ix = error_index;
-
 namespace {
 
 using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
-using Matrix6x2 = Eigen::Matrix<double, 6, 2>;
-
-constexpr Index kPose = ix::pose_size;
 
 /// Cauchy's loss of a residual of squared Mahalanobis length `squared`.
 struct Loss {
@@ -43,11 +38,8 @@ double mean_weighted_square(double k) {
 /// Adds residuals to the joint equations.
 class Sums {
  public:
-  Sums(std::size_t keyframes, CameraPose camera, const VisualConfig& config, const MatrixXd& search_covariance)
-      : camera_unknown_(camera == CameraPose::unknown),
-        equations_(keyframes + (camera_unknown_ ? 1 : 0)),
-        config_(config),
-        search_(search_covariance) {
+  Sums(const Exposure& exposed, std::size_t keyframes, const VisualConfig& config, const MatrixXd& search_covariance)
+      : exposed_(exposed), equations_(keyframes), config_(config), search_(search_covariance) {
     assert(search_.size() == 0 || search_.rows() == equations_.b.size());
   }
 
@@ -93,44 +85,38 @@ class Sums {
   }
 
  private:
-  /// Derivatives of one residual to the poses that it depends on, and where their errors begin.
+  /// Derivative of one residual to some of the errors, and where those begin.
   struct Block {
     Index at = 0;
-    Matrix2x6 J;
+    Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, 9> J;
   };
-  struct Blocks {
-    std::array<Block, 3> block;
-    std::size_t count = 0;
-    auto begin() const { return block.begin(); }
-    auto end() const { return block.begin() + static_cast<std::ptrdiff_t>(count); }
-  };
+  using Blocks = std::array<Block, 3>;
 
   Blocks blocks_of(const ImageResidual& residual, std::size_t keyframe) const {
-    const auto begin_of = [](std::size_t pose) { return ix::size + kPose * static_cast<Index>(pose); };
-    Blocks blocks;
-    blocks.block[blocks.count++] = {0, residual.J_now};
-    if (camera_unknown_) blocks.block[blocks.count++] = {begin_of(0), residual.J_camera};
-    blocks.block[blocks.count++] = {begin_of(keyframe + (camera_unknown_ ? 1 : 0)), residual.J_keyframe};
-    return blocks;
+    Eigen::Matrix<double, 2, mount_index::size> J_mount;
+    J_mount << residual.J_camera, residual.J_now * exposed_.J_delay;
+    return {{{0, residual.J_now * exposed_.J_state},
+             {joint_index::mount, J_mount},
+             {joint_index::clone(keyframe), residual.J_keyframe}}};
   }
 
   /// Covariance in the image of what the prediction leaves open.
   Matrix2d searched(const Blocks& blocks) const {
     Matrix2d sum = Matrix2d::Zero();
     for (const Block& a : blocks)
-      for (const Block& b : blocks) sum += a.J * search_.block<kPose, kPose>(a.at, b.at) * b.J.transpose();
+      for (const Block& b : blocks) sum += a.J * search_.block(a.at, b.at, a.J.cols(), b.J.cols()) * b.J.transpose();
     return sum;
   }
 
   void add_blocks(const Blocks& blocks, const Matrix2d& W, const Vector2d& r_px) {
     for (const Block& a : blocks) {
-      const Matrix6x2 JW = a.J.transpose() * W;
-      equations_.b.segment<kPose>(a.at).noalias() -= JW * r_px;
-      for (const Block& b : blocks) equations_.H.block<kPose, kPose>(a.at, b.at).noalias() += JW * b.J;
+      const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, 9, 2> JW = a.J.transpose() * W;
+      equations_.b.segment(a.at, a.J.cols()).noalias() -= JW * r_px;
+      for (const Block& b : blocks) equations_.H.block(a.at, b.at, a.J.cols(), b.J.cols()).noalias() += JW * b.J;
     }
   }
 
-  bool camera_unknown_;
+  const Exposure& exposed_;
   JointEquations equations_;
   double points_worth_ = 0.0;  ///< how many points of no other noise than the detector's say as much
   const VisualConfig& config_;
@@ -154,10 +140,11 @@ std::vector<double> adaptive_weights(std::span<const PointObservation> points, c
 }
 
 std::vector<LineObservation> nearest_of_each(std::span<const LineObservation> lines, const SE3& T_W_I,
-                                             std::span<const SE3> T_W_I_keyframes, const Rig& rig) {
+                                             std::span<const SE3> T_W_I_keyframes, const SE3& T_I_C,
+                                             const Camera& camera) {
   std::map<std::uint32_t, std::pair<double, const LineObservation*>> nearest;  // in order of their ids
   for (const LineObservation& line : lines) {
-    const auto seen = line_residual(T_W_I, T_W_I_keyframes[line.keyframe], line, rig);
+    const auto seen = line_residual(T_W_I, T_W_I_keyframes[line.keyframe], line, T_I_C, camera);
     if (!seen) continue;
     const double off_px = seen->residual.r_px.norm();
     const auto [at, first] = nearest.try_emplace(line.line_K.id, off_px, &line);
@@ -168,16 +155,17 @@ std::vector<LineObservation> nearest_of_each(std::span<const LineObservation> li
   return kept;
 }
 
-JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I_keyframes,
-                               const ImageObservations& observations, const Rig& rig, const VisualConfig& config,
-                               const MatrixXd& search_covariance, CameraPose camera) {
-  const SE3 T_W_I = state.T_W_I();
-  Sums sums(T_W_I_keyframes.size(), camera, config, search_covariance);
+JointEquations linearize_image(const NavState& state, const CameraMount& mount, std::span<const SE3> T_W_I_keyframes,
+                               const ImageObservations& observations, const Camera& camera, const VisualConfig& config,
+                               const MatrixXd& search_covariance) {
+  const Exposure exposed = exposure(state, mount.delay_s, observations.rate_I);
+  Sums sums(exposed, T_W_I_keyframes.size(), config, search_covariance);
   const std::vector<double> weights = adaptive_weights(observations.points, config);
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const PointObservation& point = observations.points[i];
     assert(point.keyframe < T_W_I_keyframes.size());
-    if (const auto residual = point_residual(T_W_I, T_W_I_keyframes[point.keyframe], point, rig))
+    if (const auto residual =
+            point_residual(exposed.T_W_I, T_W_I_keyframes[point.keyframe], point, mount.T_I_C, camera))
       sums.add(*residual, config.point_sigma_px / weights[i], point.keyframe);
     else
       sums.reject();
@@ -185,7 +173,7 @@ JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I
   if (!config.lines) return std::move(sums).capped();
   const double most_turn = std::sin(config.line_turn_deg * M_PI / 180.0);
   for (const LineObservation& line : observations.lines) {
-    const auto seen = line_residual(T_W_I, T_W_I_keyframes[line.keyframe], line, rig);
+    const auto seen = line_residual(exposed.T_W_I, T_W_I_keyframes[line.keyframe], line, mount.T_I_C, camera);
     if (seen && seen->sin_plane > config.line_plane && seen->sin_turn < most_turn)
       sums.add(seen->residual, config.line_sigma_px, line.keyframe);
     else
@@ -194,7 +182,7 @@ JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I
   return std::move(sums).capped();
 }
 
-Matrix6 keyframe_noise(std::span<const Vector3d> points_K, const Rig& rig, double sigma_px) {
+Matrix6 keyframe_noise(std::span<const Vector3d> points_K, const SE3& T_I_C, const Camera& camera, double sigma_px) {
   // What few points or a poor spread of them leave open stays within a pose that nobody would take for a keyframe's.
   constexpr double most_turn_rad = 0.01, most_shift_m = 0.1;
   Vector6 least;
@@ -203,7 +191,7 @@ Matrix6 keyframe_noise(std::span<const Vector3d> points_K, const Rig& rig, doubl
   Matrix6 information = least.asDiagonal();
   for (const Vector3d& p_K : points_K) {
     const PointObservation itself{.p_K_m = p_K, .observed_px = Vector2d::Zero()};
-    if (const auto residual = point_residual(SE3::Identity(), SE3::Identity(), itself, rig))
+    if (const auto residual = point_residual(SE3::Identity(), SE3::Identity(), itself, T_I_C, camera))
       information.noalias() += residual->J_keyframe.transpose() * residual->J_keyframe / (sigma_px * sigma_px);
   }
   return information.ldlt().solve(Matrix6::Identity());

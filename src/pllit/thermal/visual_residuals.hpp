@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "pllit/sensor/rig.hpp"
+#include "pllit/geometry/camera.hpp"
 #include "pllit/state/joint_equations.hpp"
 #include "pllit/thermal/observations.hpp"
 
@@ -31,21 +31,20 @@ std::vector<double> adaptive_weights(std::span<const PointObservation> points, c
 /// Of several observed lines that are said to be the same line of the map (parallel edges a few centimetres apart, or
 /// one edge in pieces) the one that lies nearest to where a camera at this pose sees it.
 std::vector<LineObservation> nearest_of_each(std::span<const LineObservation> lines, const SE3& T_W_I,
-                                             std::span<const SE3> T_W_I_keyframes, const Rig& rig);
+                                             std::span<const SE3> T_W_I_keyframes, const SE3& T_I_C,
+                                             const Camera& camera);
 
-/// Normal equations over the errors of `state` and of the keyframes' poses. Each residual's noise holds the detector's,
-/// by weight, and that of its depth or line; a redescending loss (Cauchy's) bounds what false matches say. Matches
-/// beyond the gate count with their cost at the gate, so that costs of two states can be compared. The rig must have a
-/// camera. `search_covariance`: square, of the prediction, for the gate; empty: no doubt. CameraPose::unknown: the
-/// errors of rig.T_I_C stand before those of the keyframes.
-enum class CameraPose { known, unknown };
-JointEquations linearize_image(const NavState& state, std::span<const SE3> T_W_I_keyframes,
-                               const ImageObservations& observations, const Rig& rig, const VisualConfig& config,
-                               const Eigen::MatrixXd& search_covariance = {}, CameraPose camera = CameraPose::known);
+/// Normal equations over the errors of `state`, of the mount and of the poses at which the keyframes were exposed. Each
+/// residual's noise holds the detector's, by weight, and that of its depth or line; a redescending loss (Cauchy's)
+/// bounds what false matches say. Matches beyond the gate count with their cost at the gate, so that costs of two
+/// states can be compared. `search_covariance`: square, of the prediction, for the gate; empty: no doubt.
+JointEquations linearize_image(const NavState& state, const CameraMount& mount, std::span<const SE3> T_W_I_keyframes,
+                               const ImageObservations& observations, const Camera& camera, const VisualConfig& config,
+                               const Eigen::MatrixXd& search_covariance = {});
 
 /// Covariance of a keyframe's pose (theta, p; right perturbation) as its own points show it, from the detector's noise
 /// alone. All later matches share it, so it belongs to the clone of the pose, once, when that is made: then a rig at
 /// rest cannot learn the same thing from every image. `points_K`: its points in its camera frame, with depth.
-Matrix6 keyframe_noise(std::span<const Vector3d> points_K, const Rig& rig, double sigma_px);
+Matrix6 keyframe_noise(std::span<const Vector3d> points_K, const SE3& T_I_C, const Camera& camera, double sigma_px);
 
 }  // namespace pllit
