@@ -71,8 +71,8 @@ std::vector<std::size_t> naive(const SurfacePoints& points, const SE3& T_W_C, co
   const auto step = [&](float r) {
     return static_cast<float>(config.depth_step_m + config.depth_step_share * double(r));
   };
-  const auto near = [&](const Seen& a, const Seen& b, int px) {
-    const int reach = (px + config.cell_px - 1) / config.cell_px;
+  const auto near = [&](const Seen& a, const Seen& b, double px) {
+    const int reach = static_cast<int>(std::ceil(px / config.cell_px));
     return std::abs(a.column - b.column) <= reach && std::abs(a.row - b.row) <= reach;
   };
   for (Seen& a : seen)
@@ -82,7 +82,8 @@ std::vector<std::size_t> naive(const SurfacePoints& points, const SE3& T_W_C, co
   for (const Seen& a : seen) {
     bool clear = true;
     for (const Seen& b : seen) {
-      if (near(a, b, config.shadow_px) && b.range_m < a.range_m - step(a.range_m)) clear = false;
+      const double shadow_px = config.shadow_px + config.shadow_m * 302.5 / static_cast<double>(b.range_m);
+      if (near(a, b, shadow_px) && b.range_m < a.range_m - step(a.range_m)) clear = false;
       if (b.in_sight && near(a, b, config.edge_px) && b.range_m > a.range_m + step(a.range_m)) clear = false;
     }
     if (clear) kept.push_back(a.index);
@@ -95,7 +96,8 @@ TEST(SampleImage, KeepsWhatComparingEveryPointWithEveryOtherKeeps) {
   for (int round = 0; round < 20; ++round) {
     const SE3 T_W_C(Vector3d(random.vector(0.3)), exp_so3(random.vector(0.15)));
     const SurfacePoints points = clutter(random, 1500);
-    const SamplingConfig config{.shadow_px = 4 * (round % 4), .edge_px = 4 * (round % 3)};
+    const SamplingConfig config{
+        .shadow_px = 4 * (round % 4), .shadow_m = 0.01 * (round % 5), .edge_px = 4 * (round % 3)};
     const auto observations = sample_image(points, T_W_C, camera(), pattern_images(), config);
     const auto expected = naive(points, T_W_C, config);
     ASSERT_EQ(observations.size(), expected.size());
@@ -103,6 +105,65 @@ TEST(SampleImage, KeepsWhatComparingEveryPointWithEveryOtherKeeps) {
     for (std::size_t i = 0; i < expected.size(); ++i)
       EXPECT_EQ(observations[i].p_W.cast<float>(), points.points_W[expected[i]]);
   }
+}
+
+TEST(SampleImage, DoesNotLookThroughANearSurfaceBetweenItsPoints) {
+  // A cabinet's front half a metre away, a point every 5 cm, which is 30 pixels; a wall 2 m away.
+  SurfacePoints points;
+  for (int x = -5; x <= 5; ++x)
+    for (int y = -5; y <= 5; ++y) {
+      points.points_W.emplace_back(0.05F * static_cast<float>(x), 0.05F * static_cast<float>(y), 0.5F);
+      points.points_W.emplace_back(0.05F * static_cast<float>(x) + 0.03F, 0.05F * static_cast<float>(y) + 0.03F, 2.0F);
+    }
+  for (const SurfaceObservation& seen : sample_image(points, SE3::Identity(), camera(), pattern_images(), {}))
+    EXPECT_LT(seen.range_m, 1.0F);
+}
+
+TEST(SampleImage, LeavesOutTheWallBesideAPanelThatHardlyStandsOut) {
+  SurfacePoints points;
+  for (float y = -1.0F; y <= 1.0F; y += 0.05F)
+    for (float x = -1.5F; x <= 1.5F; x += 0.05F) {
+      points.points_W.emplace_back(x, y, x < 0.0F ? 4.0F : 3.85F);
+      points.normals_W.emplace_back(0.0F, 0.0F, -1.0F);
+    }
+  int walls = 0;
+  for (const SurfaceObservation& seen : sample_image(points, SE3::Identity(), camera(), pattern_images(), {})) {
+    EXPECT_FALSE(seen.p_W.x() > -0.1 && seen.p_W.x() < -1e-3) << "which is within 8 pixels of the panel";
+    walls += seen.p_W.x() < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(walls, 500);
+}
+
+TEST(SampleImage, LeavesOutTheWallBesideABoxOnItThatIsSeenFromTheSide) {
+  // The box stands out by 15 cm; along the line of sight the wall behind it lies farther by more than that, and the
+  // wall at 60 degrees changes its range by as much within the box's shadow.
+  SurfacePoints points;
+  const float c = std::cos(1.05F), s = std::sin(1.05F);
+  const Vector3f along_W(c, 0.0F, s), normal_W(s, 0.0F, -c);
+  for (float y = -0.8F; y <= 0.8F; y += 0.05F)
+    for (float x = -1.0F; x <= 1.0F; x += 0.05F) {
+      const bool box = std::abs(y) < 0.3F && std::abs(x) < 0.3F;
+      points.points_W.push_back(Vector3f(0.0F, y, 4.0F) + x * along_W + (box ? 0.15F : 0.0F) * normal_W);
+      points.normals_W.push_back(normal_W);
+    }
+  for (const SurfaceObservation& seen : sample_image(points, SE3::Identity(), camera(), pattern_images(), {})) {
+    const Vector3f q = seen.p_W.cast<float>() - Vector3f(0.0F, 0.0F, 4.0F);
+    const bool wall = std::abs(q.dot(normal_W)) < 0.05F;
+    const float behind_m = q.dot(along_W) - 0.3F;
+    EXPECT_FALSE(wall && std::abs(q.y()) < 0.3F && behind_m > -0.02F && behind_m < 0.2F) << q.transpose();
+  }
+}
+
+TEST(SampleImage, KeepsAWallThatIsSeenFromTheSide) {
+  // At 55 degrees, from near to far: it does not hide itself.
+  SurfacePoints wall;
+  const float c = std::cos(0.96F), s = std::sin(0.96F);
+  for (float y = -0.8F; y <= 0.8F; y += 0.05F)
+    for (float along = -1.0F; along <= 1.0F; along += 0.05F) {
+      wall.points_W.emplace_back(c * along, y, 4.0F + s * along);
+      wall.normals_W.emplace_back(s, 0.0F, -c);
+    }
+  EXPECT_GT(sample_image(wall, SE3::Identity(), camera(), pattern_images(), {}).size(), wall.points_W.size() * 9 / 10);
 }
 
 TEST(SampleImage, ReadsThePixelThatTheLensShowsThePointIn) {
@@ -122,6 +183,26 @@ TEST(SampleImage, ReadsThePixelThatTheLensShowsThePointIn) {
     EXPECT_NEAR(static_cast<double>(o.range_m), (o.p_W - T_W_C.translation()).norm(), 1e-5);
     EXPECT_NEAR(static_cast<double>(o.footprint_m), static_cast<double>(o.range_m) / 302.5, 1e-6);
   }
+}
+
+TEST(SampleImage, TellsHowMuchDarkerAndBrighterTheImageIsCloseBy) {
+  ImagePair images{cv::Mat(camera().height, camera().width, CV_32FC1, cv::Scalar(50.0)),
+                   cv::Mat(camera().height, camera().width, CV_8UC1, cv::Scalar(50))};
+  images.calibrated.colRange(160, 320).setTo(200.0);
+  SurfacePoints wall;
+  for (float x = -1.0F; x <= 1.0F; x += 0.01F) wall.points_W.emplace_back(x, 0.0F, 3.0F);
+  int dark = 0, bright = 0;
+  for (const SurfaceObservation& o : sample_image(wall, SE3::Identity(), camera(), images, {.aim_px = 4})) {
+    const float off_px = o.pixel_px.x() - 159.5F;  // the edge
+    if (std::abs(off_px) > 7.0F) {
+      EXPECT_LT(o.dip + o.rise, 1.0F) << off_px;
+    }
+    if (std::abs(off_px) < 1.0F || std::abs(off_px) > 3.0F) continue;
+    EXPECT_NEAR(off_px < 0.0F ? o.rise : o.dip, 150.0F, 1.0F) << off_px;
+    ++(off_px < 0.0F ? dark : bright);
+  }
+  EXPECT_GT(dark, 0);
+  EXPECT_GT(bright, 0);
 }
 
 TEST(SampleImage, LeavesOutWhatIsSeenAtAGrazingAngleOrTooFar) {

@@ -30,6 +30,18 @@ struct Shown {
                   .spread = static_cast<float>(spread)},
                  config);
   }
+  /// Beside an edge of the image.
+  void beside(double intensity, double dip, double rise) {
+    time += std::chrono::milliseconds(100);
+    voxel = seen(voxel,
+                 {.time = time,
+                  .viewpoint_W = Vector3f(static_cast<float>(0.1 * to_seconds(time)), 0.0F, 0.0F),
+                  .offset_m = Vector3f::Zero(),
+                  .intensity = static_cast<float>(intensity),
+                  .dip = static_cast<float>(dip),
+                  .rise = static_cast<float>(rise)},
+                 config);
+  }
   void noisy(Random& random, double mean, double sigma, int images) {
     for (int i = 0; i < images; ++i) (*this)(mean + random.normal(sigma));
   }
@@ -205,6 +217,21 @@ TEST(ThermalVoxel, CountsViewpointsAQuarterOfAMetreApart) {
   Shown shown;
   for (int i = 0; i < 100; ++i) shown(100.0);  // a walk of 1 m
   EXPECT_EQ(shown.voxel.views, 4);
+}
+
+/// Whether a voxel that showed 100 for four seconds is hot when it shows 200 for one, beside edges of the image.
+bool gets_hot(double rise_before, double dip_now) {
+  Shown shown;
+  for (int i = 0; i < 40; ++i) shown.beside(100.0, 0.0, rise_before);
+  for (int i = 0; i < 10; ++i) shown.beside(200.0, dip_now, 0.0);
+  return shown.voxel.hot;
+}
+
+TEST(ThermalVoxel, IsHotWhereMoreChangedThanAnEdgeThatLiesAFewPixelsOffExplains) {
+  EXPECT_TRUE(gets_hot(0.0, 0.0));
+  EXPECT_TRUE(gets_hot(40.0, 40.0)) << "edges of less contrast than the change";
+  EXPECT_FALSE(gets_hot(100.0, 0.0)) << "something as bright has always been next to it in the image";
+  EXPECT_FALSE(gets_hot(0.0, 100.0)) << "and is now, with what it showed before on the other side";
 }
 
 }  // namespace

@@ -50,8 +50,78 @@ TEST(Watch, LeavesAloneWhatASeamNextToItShowedAtTimes) { EXPECT_FALSE(is_watched
 
 TEST(Watch, IsNotBlindedByASeamOfLittleContrast) { EXPECT_TRUE(is_watched_beside(100.0F, 130.0F)); }
 
+/// A wall of which all shows 100, and `later` from the sixth second on, but for the strip, which shows 140 then.
+bool is_watched_on_a_wall(float later) {
+  return is_watched([&](int image) {
+    std::vector<Reading> readings{{strip_W, image < 60 ? 100.0F : 140.0F}};
+    for (int y = -4; y <= 4; ++y)
+      for (int z = -4; z <= 4; ++z)
+        if (std::abs(y) > 1 || std::abs(z) > 1)
+          readings.push_back({strip_W + 0.05 * Vector3d(0.0, y, z), image < 60 ? 100.0F : later});
+    return readings;
+  });
+}
+
+TEST(Watch, TakesInAStripThatHeatsUpOnAWall) { EXPECT_TRUE(is_watched_on_a_wall(100.0F)); }
+
+TEST(Watch, DoesNotTakeForHeatWhatChangesWithAllAroundIt) { EXPECT_FALSE(is_watched_on_a_wall(125.0F)); }
+
+/// A dark door in a brighter room: 7 x 7 voxels show 20, all others 120; from the sixth second on the strip shows 60,
+/// and the rest of the door `later`.
+bool is_watched_in_the_dark(float later) {
+  return is_watched([&](int image) {
+    std::vector<Reading> readings;
+    for (int y = -12; y <= 12; ++y)
+      for (int z = -12; z <= 12; ++z) {
+        const bool door = std::abs(y) <= 3 && std::abs(z) <= 3, strip = y == 0 && z == 0;
+        const float grey = !door ? 120.0F : image < 60 ? 20.0F : strip ? 60.0F : later;
+        readings.push_back({strip_W + 0.05 * Vector3d(0.0, y, z), grey});
+      }
+    return readings;
+  });
+}
+
+TEST(Watch, TakesInHeatAmongTheDarkestSurfaces) { EXPECT_TRUE(is_watched_in_the_dark(20.0F)); }
+
+TEST(Watch, DoesNotTakeForHeatWhatAllTheDarkestSurfacesShow) { EXPECT_FALSE(is_watched_in_the_dark(60.0F)); }
+
+TEST(Watch, DoesNotLetAnotherSideOfTheSameHeatExplainIt) {
+  // Known until the fourth second; when the rig is back it sees the heat from the other side first.
+  EXPECT_TRUE(is_watched([](int image) {
+    if (image < 40) return std::vector<Reading>{{strip_W, 100.0F}};
+    if (image < 60) return std::vector<Reading>{};
+    if (image < 65) return std::vector<Reading>{{next_W, 200.0F}};
+    return std::vector<Reading>{{strip_W, 200.0F}, {next_W, 200.0F}};
+  }));
+}
+
 TEST(Watch, DoesNotTakeForHeatWhatChangesWithinOneLook) {
   EXPECT_FALSE(is_watched([](int image) { return std::vector<Reading>{{strip_W, image < 40 ? 100.0F : 200.0F}}; }));
+}
+
+TEST(Watch, KnowsAgainWhatACoarseSightHadMissed) {
+  ThermalMap map({});
+  const SightLog past({});
+  Watch watch{{map.key_at(strip_W),
+               {.new_surface = true, .hot = true, .normal = 100.0F, .sigma = 6.0F, .owner = 1, .position_W = strip_W}}};
+  const auto look = [&](int image, double wall_m) {
+    const Time time{std::chrono::milliseconds(100 * image)};
+    const ThermalView view{
+        .time = time, .observations = {{.p_W = strip_W, .pixel_px = {0.0F, 0.0F}, .intensity = 200.0F, .raw = 200.0F}}};
+    std::vector<Vector3f> wall_W;
+    for (float y = -1.0F; y <= 1.0F; y += 0.02F)
+      for (float z = -1.0F; z <= 1.0F; z += 0.02F) wall_W.emplace_back(wall_m, y, z);
+    const auto seen = map.integrate(view);
+    const Sight sight = sight_of(time, Vector3d::Zero(), wall_W, past.config());
+    watch = watched(std::move(watch), {.map = map, .seen = seen, .sight = sight, .past = past}, {});
+    return watch.begin()->second;
+  };
+  EXPECT_TRUE(look(1, 3.0).hot);
+  look(2, 5.0);
+  EXPECT_TRUE(look(3, 5.0).vacated) << "two scans saw through it";
+  EXPECT_FALSE(look(4, 5.0).hot);
+  EXPECT_FALSE(look(5, 3.0).vacated) << "there is a surface again, as hot";
+  EXPECT_TRUE(look(6, 3.0).hot);
 }
 
 }  // namespace

@@ -70,10 +70,12 @@ Box on_table(double grey) { return {kOnTable, {0.25, 0.25, 0.3}, steady(grey)}; 
 
 Camera camera() { return {.width = 160, .height = 128, .fx = 150.0, .fy = 150.0, .cx = 80.0, .cy = 64.0}; }
 
+/// For a camera with a fifth of the usual pixels an angle.
 ThermographyConfig config() {
   ThermographyConfig config;
   config.sampling.border_px = 4;
   config.sampling.shadow_px = 4;
+  config.sampling.aim_px = 1;
   return config;
 }
 
@@ -212,9 +214,12 @@ TEST(Thermography, TakesPartsThatLieCloseTogetherForOneThing) {
 }
 
 TEST(Thermography, WaitsForMoreViewpointsWhereHeatIsOneVoxelThick) {
-  // A strip of the wall: in front of it the camera, with four pixels a decimetre, would not see it at all.
+  // A strip of the wall: in front of it the camera, with four pixels a decimetre, would not see it at all. It is two
+  // pixels wide, so that these must be where they are said to be.
   const auto alarm_after_s = [](double width_m) {
-    Watched watched{.world = room()};
+    ThermographyConfig settings = config();
+    settings.sampling.aim_px = 0;
+    Watched watched{.world = room(), .settings = settings};
     watched.world.boxes.push_back(
         {{4.89, 0.125, 1.4}, {0.02, width_m, 0.8}, [](double t_s) { return t_s < 15.0 ? 95.0 : 215.0; }});
     watched.until(32.0);

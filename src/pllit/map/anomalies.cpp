@@ -48,6 +48,31 @@ struct Members {
   }
 };
 
+/// How an anomaly stands: by those of its voxels that were seen when it was last looked at, if these are enough of it.
+/// The others may not have been seen since it cooled.
+AnomalyState state_of(const Watch& watch, std::uint32_t id) {
+  constexpr double kOneLook_s = 5.0;
+  constexpr int kEnough = 5;  // one of so many
+  Time seen{};
+  for (const auto& [key, watched] : watch)
+    if (watched.owner == id && !watched.vacated) seen = std::max(seen, watched.seen);
+  int all = 0, left = 0, hot = 0, in_view = 0, hot_in_view = 0;
+  for (const auto& [key, watched] : watch) {
+    if (watched.owner != id) continue;
+    ++all;
+    left += watched.vacated ? 1 : 0;
+    if (watched.vacated) continue;
+    const int is_hot = watched.hot ? 1 : 0, is_seen = to_seconds(seen - watched.seen) < kOneLook_s ? 1 : 0;
+    hot += is_hot;
+    in_view += is_seen;
+    hot_in_view += is_hot * is_seen;
+  }
+  const bool enough = kEnough * in_view >= all - left;
+  const int judged = enough ? in_view : all - left, judged_hot = enough ? hot_in_view : hot;
+  if (2 * left > all || 5 * judged_hot <= judged) return AnomalyState::gone;
+  return 2 * judged_hot < judged ? AnomalyState::cooling : AnomalyState::confirmed;
+}
+
 Members members_of(const Watch& watch, std::uint32_t id, Time now, double dwell_s) {
   Members members;
   for (const auto& [key, watched] : watch)
@@ -203,12 +228,7 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
     anomaly.confirmed = now;
     return;
   }
-  // A few voxels may not have been seen since it cooled.
-  const int there = members.all - members.left;
-  const bool left = 2 * members.left > members.all;
-  anomaly.state = left || 5 * members.hot <= there ? AnomalyState::gone
-                  : 2 * members.hot < there        ? AnomalyState::cooling
-                                                   : AnomalyState::confirmed;
+  anomaly.state = state_of(watch_, anomaly.id);
 }
 
 void AnomalyDetector::drop_vanished(Time now) {

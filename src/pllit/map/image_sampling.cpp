@@ -4,12 +4,17 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
+#include <opencv2/imgproc.hpp>
+#include <utility>
 
 namespace pllit {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+double px_per_rad(const Camera& camera) { return 0.5 * (camera.fx + camera.fy); }
 
 /// A point that falls into the image.
 struct Projected {
@@ -17,6 +22,10 @@ struct Projected {
   Eigen::Vector2d pixel_px;
   float range_m;
   int cell;
+  Vector3f p_W;       ///< from the camera
+  Vector3f normal_W;  ///< towards the camera; zero where it is not known
+
+  float cos_incidence() const { return -p_W.dot(normal_W) / range_m; }
 };
 
 /// A number for each cell of an image.
@@ -37,66 +46,137 @@ struct CellGrid {
   float operator[](int cell) const { return values[static_cast<std::size_t>(cell)]; }
 };
 
-/// The best value, by `better`, among the cells that reach within so many pixels of a cell's border: along rows, then
-/// along columns.
-template <class Better>
-CellGrid spread(const CellGrid& grid, int radius_px, const Better& better) {
-  const int reach = (radius_px + grid.cell_px - 1) / grid.cell_px;
+/// The best value, by `better`, of those that reach a cell: each reaches `reach(value)` cells to all sides, a better
+/// one no less far, so that rows and then columns find the same.
+template <class Better, class Reach>
+CellGrid spread(const CellGrid& grid, const Better& better, const Reach& reach) {
   CellGrid along = grid, both = grid;
+  const auto scatter = [&](const CellGrid& from, CellGrid& to, int i, int place, int places, int stride) {
+    const float value = from[i];
+    if (std::isinf(value)) return;
+    const int far = reach(value);
+    for (int k = std::max(0, place - far); k <= std::min(places - 1, place + far); ++k) {
+      float& best = to[i + (k - place) * stride];
+      best = better(best, value);
+    }
+  };
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
-      for (int c = std::max(0, column - reach); c <= std::min(grid.columns - 1, column + reach); ++c) {
-        float& best = along[row * grid.columns + column];
-        best = better(best, grid[row * grid.columns + c]);
-      }
+      scatter(grid, along, row * grid.columns + column, column, grid.columns, 1);
   for (int row = 0; row < grid.rows; ++row)
-    for (int r = std::max(0, row - reach); r <= std::min(grid.rows - 1, row + reach); ++r)
-      for (int column = 0; column < grid.columns; ++column) {
-        float& best = both[row * grid.columns + column];
-        best = r == row ? better(best, along[row * grid.columns + column])
-                        : better(best, along[r * grid.columns + column]);
-      }
+    for (int column = 0; column < grid.columns; ++column)
+      scatter(along, both, row * grid.columns + column, row, grid.rows, grid.columns);
   return both;
 }
 
-std::vector<Projected> projected(const std::vector<Vector3f>& points_W, const SE3& T_W_C, const Camera& camera,
+std::vector<Projected> projected(const SurfacePoints& points, const SE3& T_W_C, const Camera& camera,
                                  const SamplingConfig& config, const CellGrid& grid) {
   const Matrix3d R_C_W = T_W_C.rotation().transpose();
   const Vector3d p_W_C = T_W_C.translation();
   const double border = config.border_px;
   std::vector<Projected> seen;
-  for (std::size_t i = 0; i < points_W.size(); ++i) {
-    const Vector3d p_C = R_C_W * (points_W[i].cast<double>() - p_W_C);
+  for (std::size_t i = 0; i < points.points_W.size(); ++i) {
+    const Vector3d ray_W = points.points_W[i].cast<double>() - p_W_C, p_C = R_C_W * ray_W;
     const double range_m = p_C.norm();
     if (p_C.z() < 0.1 * range_m || range_m < config.min_range_m || range_m > config.max_range_m) continue;
     const auto pixel = camera.project(p_C);
     if (!pixel || pixel->x() < border || pixel->y() < border || pixel->x() > camera.width - 1.0 - border ||
         pixel->y() > camera.height - 1.0 - border)
       continue;
-    seen.push_back({i, *pixel, static_cast<float>(range_m), grid.cell_at(*pixel)});
+    const Vector3f from_camera_W = ray_W.cast<float>();
+    const Vector3f normal_W = points.normals_W.empty() ? Vector3f(Vector3f::Zero()) : points.normals_W[i];
+    const float towards = normal_W.dot(from_camera_W) > 0.0F ? -1.0F : 1.0F;
+    seen.push_back({.index = i,
+                    .pixel_px = *pixel,
+                    .range_m = static_cast<float>(range_m),
+                    .cell = grid.cell_at(*pixel),
+                    .p_W = from_camera_W,
+                    .normal_W = towards * normal_W});
   }
   return seen;
 }
 
-/// Keeps what no nearer surface is close to, then what no farther one (of those in sight) is close to.
-void keep_unobstructed(std::vector<Projected>& points, const CellGrid& empty, const SamplingConfig& config) {
-  const auto nearer = [](float a, float b) { return std::min(a, b); };
-  const auto farther = [](float a, float b) { return std::max(a, b); };
-  const auto step_m = [&](const Projected& point) {
-    return static_cast<float>(config.depth_step_m + config.depth_step_share * static_cast<double>(point.range_m));
-  };
-  CellGrid nearest = empty;
-  for (const Projected& point : points) nearest[point.cell] = nearer(nearest[point.cell], point.range_m);
-  CellGrid farthest = empty;
-  std::ranges::fill(farthest.values, -kInfinity);
-  for (const Projected& point : points)
-    if (nearest[point.cell] >= point.range_m - step_m(point))
-      farthest[point.cell] = farther(farthest[point.cell], point.range_m);
-  nearest = spread(nearest, config.shadow_px, nearer);
-  farthest = spread(farthest, config.edge_px, farther);
-  std::erase_if(points, [&](const Projected& point) {
-    return nearest[point.cell] < point.range_m - step_m(point) || farthest[point.cell] > point.range_m + step_m(point);
-  });
+/// Which points lie too near in the image to surfaces nearer or farther than their own.
+class Obstruction {
+ public:
+  Obstruction(const std::vector<Projected>& points, const CellGrid& empty, const Camera& camera,
+              const SamplingConfig& config)
+      : points_(points),
+        config_(config),
+        shadow_px_m_(config.shadow_m * px_per_rad(camera)),
+        edge_rad_((config.edge_px + empty.cell_px) / px_per_rad(camera)),
+        first_(empty.values.size(), kNone),
+        nearest_(empty),
+        farthest_(empty) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      std::size_t& first = first_[static_cast<std::size_t>(points[i].cell)];
+      if (first == kNone || points[i].range_m < points[first].range_m) first = i;
+    }
+    for (const std::size_t i : first_)
+      if (i != kNone) nearest_[points[i].cell] = points[i].range_m;
+    std::ranges::fill(farthest_.values, -kInfinity);
+    for (const Projected& point : points)
+      if (nearest_[point.cell] >= point.range_m - step_m(point))
+        farthest_[point.cell] = std::max(farthest_[point.cell], point.range_m);
+    reaching_ = spread(nearest_, [](float a, float b) { return std::min(a, b); }, [&](float m) { return shadow(m); });
+    farthest_ = spread(
+        farthest_, [](float a, float b) { return std::max(a, b); }, [&](float) { return cells(config.edge_px); });
+  }
+
+  bool is_obstructed(const Projected& point) const {
+    if (farthest_[point.cell] > point.range_m + edge_step_m(point)) return true;
+    const float nearest_m = reaching_[point.cell];
+    if (point.normal_W.isZero()) return nearest_m < point.range_m - step_m(point);
+    return nearest_m < point.range_m && stands_before(point, shadow(nearest_m));
+  }
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  int cells(double px) const { return static_cast<int>(std::ceil(px / nearest_.cell_px)); }
+  /// Cells around a point of a surface that it may hide.
+  int shadow(float range_m) const { return cells(config_.shadow_px + shadow_px_m_ / static_cast<double>(range_m)); }
+  /// What makes one surface nearer than another where its slope is not known.
+  float step_m(const Projected& point) const {
+    return static_cast<float>(config_.depth_step_m + config_.depth_step_share * static_cast<double>(point.range_m));
+  }
+  float edge_step_m(const Projected& point) const {
+    if (point.normal_W.isZero()) return step_m(point);
+    const auto cos = static_cast<double>(std::max(0.05F, point.cos_incidence()));
+    const double slope = std::sqrt(std::max(0.0, 1.0 - cos * cos)) / cos;  // of range over way across
+    return static_cast<float>(config_.depth_step_m + slope * static_cast<double>(point.range_m) * edge_rad_);
+  }
+
+  /// Whether, among the cells around, the first surface of any reaches the point and stands out of its plane.
+  bool stands_before(const Projected& point, int reach) const {
+    const int column = point.cell % nearest_.columns, row = point.cell / nearest_.columns;
+    for (int r = std::max(0, row - reach); r <= std::min(nearest_.rows - 1, row + reach); ++r)
+      for (int c = std::max(0, column - reach); c <= std::min(nearest_.columns - 1, column + reach); ++c) {
+        const float range_m = nearest_[r * nearest_.columns + c];
+        if (!(range_m < point.range_m) || std::max(std::abs(r - row), std::abs(c - column)) > shadow(range_m)) continue;
+        const Projected& other = points_[first_[static_cast<std::size_t>(r * nearest_.columns + c)]];
+        if (point.normal_W.dot(other.p_W - point.p_W) > static_cast<float>(config_.depth_step_m)) return true;
+      }
+    return false;
+  }
+
+  const std::vector<Projected>& points_;
+  const SamplingConfig& config_;
+  double shadow_px_m_, edge_rad_;
+  std::vector<std::size_t> first_;  ///< nearest point of each cell
+  CellGrid nearest_;                ///< its range
+  CellGrid reaching_ = nearest_;    ///< the least range of those whose shadows reach a cell
+  CellGrid farthest_;               ///< the greatest of those in sight next to a cell
+};
+
+/// Keeps what no nearer surface is close to, nor a farther one (of those in sight).
+std::vector<Projected> unobstructed(const std::vector<Projected>& points, const CellGrid& empty, const Camera& camera,
+                                    const SamplingConfig& config) {
+  const Obstruction obstruction(points, empty, camera, config);
+  std::vector<Projected> kept;
+  std::ranges::copy_if(points, std::back_inserter(kept),
+                       [&](const Projected& point) { return !obstruction.is_obstructed(point); });
+  return kept;
 }
 
 float read_bilinear(const cv::Mat& image, const Eigen::Vector2d& pixel_px) {
@@ -106,6 +186,19 @@ float read_bilinear(const cv::Mat& image, const Eigen::Vector2d& pixel_px) {
   const float* upper = image.ptr<float>(row) + column;
   const float* lower = image.ptr<float>(row + 1) + column;
   return (1.0F - y) * ((1.0F - x) * upper[0] + x * upper[1]) + y * ((1.0F - x) * lower[0] + x * lower[1]);
+}
+
+/// The least and the most of an image within so many pixels of one: every other pixel, which a smoothed image allows.
+std::pair<float, float> range_around(const cv::Mat& smooth, const Eigen::Vector2d& pixel_px, int radius_px) {
+  const int column = static_cast<int>(pixel_px.x() + 0.5), row = static_cast<int>(pixel_px.y() + 0.5);
+  float least = smooth.at<float>(row, column), most = least;
+  for (int r = std::max(0, row - radius_px); r <= std::min(smooth.rows - 1, row + radius_px); r += 2)
+    for (int c = std::max(0, column - radius_px); c <= std::min(smooth.cols - 1, column + radius_px); c += 2) {
+      const float value = smooth.ptr<float>(r)[c];
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+  return {least, most};
 }
 
 float read_raw(const cv::Mat& image, const Eigen::Vector2d& pixel_px) {
@@ -123,24 +216,26 @@ std::vector<SurfaceObservation> sample_image(const SurfacePoints& points, const 
   assert(images.raw.cols == camera.width && images.raw.rows == camera.height);
   assert(config.border_px >= 0);
   const CellGrid empty(camera, config.cell_px, kInfinity);
-  std::vector<Projected> seen = projected(points.points_W, T_W_C, camera, config, empty);
-  keep_unobstructed(seen, empty, config);
+  const std::vector<Projected> seen =
+      unobstructed(projected(points, T_W_C, camera, config, empty), empty, camera, config);
 
-  const auto px_per_rad = static_cast<float>(0.5 * (camera.fx + camera.fy));
+  cv::Mat smooth;
+  cv::blur(images.calibrated, smooth, {3, 3});
+  const auto per_rad = static_cast<float>(px_per_rad(camera));
   std::vector<SurfaceObservation> observations;
   observations.reserve(seen.size());
   for (const Projected& point : seen) {
     SurfaceObservation observation{.p_W = points.points_W[point.index].cast<double>(),
                                    .pixel_px = point.pixel_px.cast<float>()};
-    if (!points.normals_W.empty() && !points.normals_W[point.index].isZero()) {
-      const Vector3d ray_W = (observation.p_W - T_W_C.translation()).normalized();
-      observation.cos_incidence = static_cast<float>(std::abs(ray_W.dot(points.normals_W[point.index].cast<double>())));
-      if (observation.cos_incidence < static_cast<float>(config.min_cos_incidence)) continue;
-    }
+    if (!point.normal_W.isZero()) observation.cos_incidence = point.cos_incidence();
+    if (observation.cos_incidence < static_cast<float>(config.min_cos_incidence)) continue;
     observation.intensity = read_bilinear(images.calibrated, point.pixel_px);
+    const auto [least, most] = range_around(smooth, point.pixel_px, config.aim_px);
+    observation.dip = std::max(0.0F, observation.intensity - least);
+    observation.rise = std::max(0.0F, most - observation.intensity);
     observation.raw = read_raw(images.raw, point.pixel_px);
     observation.range_m = point.range_m;
-    observation.footprint_m = point.range_m / px_per_rad;
+    observation.footprint_m = point.range_m / per_rad;
     observations.push_back(observation);
   }
   return observations;

@@ -8,6 +8,7 @@
 namespace pllit {
 
 struct Surroundings {
+  double median = 0.0;
   double upper = 0.0;   ///< quartile
   double spread = 0.0;  ///< robust standard deviation
 };
@@ -21,7 +22,7 @@ inline std::optional<Surroundings> surroundings_of(std::vector<double> values) {
   const auto at = [&](double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
   };
-  return Surroundings{at(0.75), (at(0.75) - at(0.25)) / kQuartilesOfSigma};
+  return Surroundings{at(0.5), at(0.75), (at(0.75) - at(0.25)) / kQuartilesOfSigma};
 }
 
 }  // namespace pllit

@@ -21,6 +21,8 @@ VoxelSample sample_of(const ThermalView& view, const Vector3d& centre_W,
     const SurfaceObservation& observation = view.observations[index];
     sample.intensity += observation.intensity;
     sample.raw += observation.raw;
+    sample.dip += observation.dip;
+    sample.rise += observation.rise;
     sample.doubt += observation.doubt;
     sample.saturated += observation.saturated ? 1.0F : 0.0F;
     sample.offset_m += (observation.p_W - centre_W).cast<float>();
@@ -28,6 +30,8 @@ VoxelSample sample_of(const ThermalView& view, const Vector3d& centre_W,
   const float share = 1.0F / static_cast<float>(members.size());
   sample.intensity *= share;
   sample.raw *= share;
+  sample.dip *= share;
+  sample.rise *= share;
   sample.doubt *= share;
   sample.saturated *= share;
   sample.offset_m *= share;

@@ -17,6 +17,8 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   const float d = sample.intensity - voxel.mean;
   const auto approach = [&](float weight) {
     voxel.mean += weight * d;
+    voxel.dip += weight * (sample.dip - voxel.dip);
+    voxel.rise += weight * (sample.rise - voxel.rise);
     voxel.doubt += weight * (sample.doubt - voxel.doubt);
     voxel.saturated += weight * (sample.saturated - voxel.saturated);
   };
@@ -34,11 +36,13 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   voxel.squares = (1.0F - weight) * (voxel.squares + weight * d * d);
 }
 
-void remember_change(ThermalVoxel& voxel, float intensity, Time time) {
+void remember_change(ThermalVoxel& voxel, const VoxelSample& sample) {
   constexpr std::uint16_t kShort = 8;
-  if (voxel.changes == 0) voxel.change_since = time;
+  if (voxel.changes == 0) voxel.change_since = sample.time;
   voxel.changes = static_cast<std::uint16_t>(std::min<int>(voxel.changes + 1, 60000));
-  voxel.changed_mean += (intensity - voxel.changed_mean) / static_cast<float>(std::min(voxel.changes, kShort));
+  const auto images = static_cast<float>(std::min(voxel.changes, kShort));
+  voxel.changed_mean += (sample.intensity - voxel.changed_mean) / images;
+  voxel.changed_dip += (sample.dip - voxel.changed_dip) / images;
   voxel.calm = 0;
 }
 
@@ -46,7 +50,7 @@ void remember_calm(ThermalVoxel& voxel) {
   if (voxel.changes == 0) return;
   if (++voxel.calm < kCalmImages) return;
   voxel.changes = 0;
-  voxel.changed_mean = 0.0F;
+  voxel.changed_mean = voxel.changed_dip = 0.0F;
   voxel.calm = 0;
   voxel.hot = false;
 }
@@ -58,11 +62,14 @@ void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfi
   const float limit = std::max(gate, static_cast<float>(config.min_change));
   const bool changed = voxel.hot ? d > static_cast<float>(config.release_sigmas) * sigma : std::abs(d) > limit;
   if (changed) {
-    remember_change(voxel, sample.intensity, sample.time);
-    if (voxel.changes >= config.hits && voxel.changed_mean - voxel.mean > limit) voxel.hot = true;
+    remember_change(voxel, sample);
+    if (voxel.changes >= config.hits && voxel.changed_mean - voxel.mean > limit &&
+        voxel.sure_change() > static_cast<float>(config.sure_change))
+      voxel.hot = true;
     return;
   }
   remember_calm(voxel);
+  voxel.normal_at = sample.time;
   // Between the gate and the least change that counts it may be drift: followed, but slowly. So are poor images.
   const float trust = own_sigma * own_sigma / (sigma * sigma);
   if (voxel.changes == 0) learn(voxel, sample, (std::abs(d) > gate ? 0.25F : 1.0F) * trust, config);
@@ -105,10 +112,12 @@ ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelMode
   voxel.points += static_cast<float>(sample.points);
   voxel.raw = sample.raw;
   remember_brightest(voxel, sample, config);
-  if (voxel.learned(config))
+  if (voxel.learned(config)) {
     judge(voxel, sample, config);
-  else
+  } else {
     learn(voxel, sample, 1.0F, config);
+    voxel.normal_at = sample.time;
+  }
   return voxel;
 }
 

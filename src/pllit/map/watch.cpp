@@ -26,6 +26,25 @@ void for_older_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey ke
   });
 }
 
+Vector3d ray_W(const WatchInput& input, VoxelKey key) {
+  return (input.map.position_W(key, *input.map.find(key)) - input.sight.p_W).normalized();
+}
+
+/// Calls visit(voxel) for the voxels that the image shows within an angle of one, whatever their distance, if they are
+/// older than a time and not watched themselves.
+template <class Visit>
+void for_older_in_view(const WatchInput& input, const Watch& watch, VoxelKey key, double deg, Time before,
+                       const Visit& visit) {
+  const double least_cos = std::cos(deg * std::numbers::pi / 180.0);
+  const Vector3d towards_W = ray_W(input, key);
+  for (const VoxelKey seen : input.seen) {
+    const ThermalVoxel& voxel = *input.map.find(seen);
+    if (seen != key && was_there(voxel, before) && ray_W(input, seen).dot(towards_W) > least_cos &&
+        !watch.contains(seen))
+      visit(voxel);
+  }
+}
+
 /// Whether something next to it has always been nearly as hot, or at times: calibration is good to a few pixels only,
 /// and what lies on a seam shows now the one side and now the other.
 bool explained_by_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey key, float hot, float change,
@@ -44,23 +63,6 @@ struct Normal {
   float value, sigma;
 };
 
-/// The normal intensities of older surfaces that the image shows around a point, whatever their distance.
-std::vector<double> around_in_view(const WatchInput& input, const Watch& watch, VoxelKey key, Time before,
-                                   const WatchConfig& config) {
-  const double least_cos = std::cos(config.surround_deg * std::numbers::pi / 180.0);
-  const auto ray_W = [&](VoxelKey of) -> Vector3d {
-    return (input.map.position_W(of, *input.map.find(of)) - input.sight.p_W).normalized();
-  };
-  const Vector3d towards_W = ray_W(key);
-  std::vector<double> values;
-  for (const VoxelKey seen : input.seen) {
-    const ThermalVoxel& voxel = *input.map.find(seen);
-    if (was_there(voxel, before) && !watch.contains(seen) && ray_W(seen).dot(towards_W) > least_cos)
-      values.push_back(static_cast<double>(voxel.mean));
-  }
-  return values;
-}
-
 /// By the older surfaces next to it, or where those are too few by those around it in the image: what stands behind it
 /// was to be seen in its place. Nothing where these are too few as well.
 std::optional<Normal> surroundings(const WatchInput& input, const Watch& watch, VoxelKey key, Time before,
@@ -70,7 +72,12 @@ std::optional<Normal> surroundings(const WatchInput& input, const Watch& watch, 
   for_older_neighbours(map, watch, key, config.surround_voxels, before,
                        [&](const ThermalVoxel& voxel) { values.push_back(static_cast<double>(voxel.mean)); });
   auto around = surroundings_of(std::move(values));
-  if (!around) around = surroundings_of(around_in_view(input, watch, key, before, config));
+  if (!around) {  // values has been moved from
+    values.clear();
+    for_older_in_view(input, watch, key, config.surround_deg, before,
+                      [&](const ThermalVoxel& voxel) { values.push_back(static_cast<double>(voxel.mean)); });
+    around = surroundings_of(std::move(values));
+  }
   if (!around) return std::nullopt;
   return Normal{static_cast<float>(around->upper),
                 static_cast<float>(std::max(map.config().model.noise, around->spread))};
@@ -108,15 +115,51 @@ std::optional<Normal> cooler_before(const WatchInput& input, const Watch& watch,
   const Time before = voxel.first_seen - from_seconds(config.evidence_lead_s);
   const auto normal = normal_of_new(input, watch, key, voxel, before, config);
   if (!normal || !hot_against(voxel, *normal, input.spread, model)) return std::nullopt;
+  if (voxel.sure_change_from(normal->value) < static_cast<float>(model.sure_change)) return std::nullopt;
   const float change = voxel.mean - normal->value;
   if (explained_by_neighbours(input.map, watch, key, voxel.mean, change, before, config)) return std::nullopt;
   return normal;
 }
 
+/// The median of (what this image shows) - (what is normal), of known surfaces; nothing where those are too few, or it
+/// is a cooling.
+float common_change(std::vector<double> changes) {
+  const auto common = surroundings_of(std::move(changes));
+  return common ? std::max(0.0F, static_cast<float>(common->median)) : 0.0F;
+}
+
+/// How much the known surfaces around a voxel that the same image shows have changed along with it, though none of them
+/// by enough to count: what the image's curve could not take out, not heat.
+float change_around(const WatchInput& input, const Watch& watch, VoxelKey key, const ThermalVoxel& voxel,
+                    const WatchConfig& config) {
+  std::vector<double> changes;
+  for_neighbours(key, config.surround_voxels, [&](VoxelKey next) {
+    const ThermalVoxel* around = next == key ? nullptr : input.map.find(next);
+    if (around && around->last_seen == voxel.last_seen && around->learned(input.map.config().model) &&
+        around->changes == 0 && !watch.contains(next))
+      changes.push_back(static_cast<double>(around->last - around->mean));
+  });
+  return common_change(std::move(changes));
+}
+
+/// How much all that is normally as bright as a voxel has changed with it, as far as the image's curve can be off:
+/// where few surfaces tie it, at its ends above all, it may run anywhere.
+float change_of_alike(const WatchInput& input, const Watch& watch, const ThermalVoxel& voxel) {
+  const VoxelModelConfig& model = input.map.config().model;
+  const auto alike = static_cast<float>(model.min_change / 3.0), most = static_cast<float>(1.5 * model.min_change);
+  std::vector<double> changes;
+  for (const VoxelKey key : input.seen) {
+    const ThermalVoxel& other = *input.map.find(key);
+    if (other.learned(model) && !watch.contains(key) && std::abs(other.mean - voxel.mean) <= alike)
+      changes.push_back(static_cast<double>(other.last - other.mean));
+  }
+  return std::min(most, common_change(std::move(changes)));
+}
+
 void note_heat(WatchedVoxel& watched, float value, Time time) {
   watched.change = value - watched.normal;
   watched.peak = std::max(watched.peak, watched.change);
-  watched.last = time;
+  watched.last = watched.seen = time;
   watched.hot = true;
   ++watched.hits;
 }
@@ -125,12 +168,17 @@ void note_heat(WatchedVoxel& watched, float value, Time time) {
 void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
                    const WatchConfig& config) {
   if (to_seconds(voxel.change_since - voxel.first_seen) < config.least_past_s) return;
-  const float change = voxel.changed_mean - voxel.mean;
-  if (explained_by_neighbours(input.map, watch, key, voxel.changed_mean, change, voxel.change_since, config)) return;
+  const VoxelModelConfig& model = input.map.config().model;
+  const float change = voxel.changed_mean - voxel.mean, sigma = voxel.sigma(model);
+  const float least = std::max(static_cast<float>(model.min_change), static_cast<float>(model.gate_sigmas) * sigma);
+  if (change - change_around(input, watch, key, voxel, config) < least) return;
+  if (change - change_of_alike(input, watch, voxel) < least) return;
+  // What has come into sight since it was last normal may be the same heat, from another side.
+  if (explained_by_neighbours(input.map, watch, key, voxel.changed_mean, change, voxel.normal_at, config)) return;
   WatchedVoxel watched{.since = voxel.change_since,
                        .hits = voxel.changes - 1,
                        .normal = voxel.mean,
-                       .sigma = voxel.sigma(input.map.config().model),
+                       .sigma = sigma,
                        .position_W = input.map.position_W(key, voxel)};
   note_heat(watched, voxel.changed_mean, voxel.last_seen);
   watch.emplace(key, watched);
@@ -175,6 +223,7 @@ void take_in_new(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const Wa
 void follow(WatchedVoxel& watched, VoxelKey key, const ThermalVoxel& voxel, const ThermalMap& map) {
   const VoxelModelConfig& model = map.config().model;
   watched.position_W = map.position_W(key, voxel);
+  watched.seen = voxel.last_seen;
   const float now = voxel.present();
   const float release = static_cast<float>(model.release_sigmas) * watched.sigma;
   const bool hot = watched.new_surface ? now - watched.normal > release : voxel.hot;
@@ -198,6 +247,16 @@ void notice_leaving(Watch& watch, const WatchInput& input) {
   }
 }
 
+/// Whether a voxel that the image shows has left. A coarse sight may have missed it for a while: a surface in its place
+/// is it again.
+bool is_away(WatchedVoxel& watched, const WatchInput& input) {
+  if (watched.vacated && look_around(input.sight, watched.position_W, input.past.config()) == PointSight::surface) {
+    watched.vacated = false;
+    watched.seen_through = 0;
+  }
+  return watched.vacated;
+}
+
 }  // namespace
 
 Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
@@ -206,7 +265,7 @@ Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
   for (const VoxelKey key : input.seen) {
     const ThermalVoxel& voxel = *input.map.find(key);
     if (const auto found = watch.find(key); found != watch.end()) {
-      if (!found->second.vacated) follow(found->second, key, voxel, input.map);
+      if (!is_away(found->second, input)) follow(found->second, key, voxel, input.map);
     } else if (voxel.hot) {
       take_in_known(watch, key, voxel, input, config);
     } else if (!voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits) &&

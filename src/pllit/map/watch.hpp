@@ -13,8 +13,8 @@ struct WatchConfig {
   double least_past_s = 5.0;     ///< for so long a surface was known when it changed: within one look, views change
   int seam_voxels = 2;           ///< so near, heat that has always been explains a change: images lie a few pixels off
   double seam_lead_s = 3.0;      ///< ... and so does what was as bright at times, so long before at least
-  int surround_voxels = 8;       ///< how far around a new surface its surroundings are looked at ...
-  double surround_deg = 10.0;    ///< ... and in the image, where little is known there
+  int surround_voxels = 8;       ///< how far around a surface its surroundings are looked at ...
+  double surround_deg = 10.0;    ///< ... and in the image, where little is known around a new one
   double evidence_lead_s = 0.5;  ///< sights so shortly before a surface was first seen do not speak of it
 };
 
@@ -25,6 +25,7 @@ struct WatchedVoxel {
   bool hot = false;
   bool vacated = false;     ///< seen through since: the surface has left
   Time since{}, last{};     ///< first and last image of this heat
+  Time seen{};              ///< last image that showed it, hot or not
   int hits = 0;             ///< images that showed it
   int seen_through = 0;     ///< images in a row
   float normal = 0.0F;      ///< what it should be
@@ -51,8 +52,9 @@ using Watch = std::map<VoxelKey, WatchedVoxel>;
 
 /// The watch after one more image. A voxel is taken in
 /// - where its own past is known: when its change has lasted as the voxel's model demands, began no sooner after the
-///   surface came into sight than a look takes, and is more than what its neighbours' pasts explain (a seam that is
-///   seen a few pixels off, or shows now the one side and now the other), and
+///   surface came into sight than a look takes, is more than the surfaces around have changed with it, and more than
+///   what its neighbours' pasts explain (a seam that is seen a few pixels off, or shows now the one side and now the
+///   other), and
 /// - where it is a new surface: when it is hotter than its surroundings, which is what was to be seen through the place
 ///   where it now is, and earlier sights did see through that; what they did not may have been hot for ever, unless it
 ///   is part of a watched thing: next to it, and as hot.

@@ -92,7 +92,10 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
 
   for (SurfaceObservation& observation : view.observations) {
     const double seen = observation.intensity, radius2 = squared_radius(observation.pixel_px, camera_);
-    observation.intensity = static_cast<float>(anchor_(seen, radius2));
+    const double tied = anchor_(seen, radius2);
+    observation.dip = static_cast<float>(tied - anchor_(seen - static_cast<double>(observation.dip), radius2));
+    observation.rise = static_cast<float>(anchor_(seen + static_cast<double>(observation.rise), radius2) - tied);
+    observation.intensity = static_cast<float>(tied);
     observation.doubt = static_cast<float>(anchor_.doubt(seen, radius2));
     observation.saturated = input.raw.depth() == CV_8U && observation.raw >= config_.saturated_grey;
   }
