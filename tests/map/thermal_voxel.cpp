@@ -18,29 +18,30 @@ struct Shown {
   ThermalVoxel voxel{};
   Time time{};
 
-  void operator()(double intensity, double saturated = 0.0, double spread = 0.0, double doubt = 0.0) {
+  void show(VoxelSample sample) {
     time += std::chrono::milliseconds(100);
-    voxel = seen(voxel,
-                 {.time = time,
-                  .viewpoint_W = Vector3f(static_cast<float>(0.1 * to_seconds(time)), 0.0F, 0.0F),
-                  .offset_m = Vector3f::Zero(),
-                  .intensity = static_cast<float>(intensity),
-                  .doubt = static_cast<float>(doubt),
-                  .saturated = static_cast<float>(saturated),
-                  .spread = static_cast<float>(spread)},
-                 config);
+    sample.time = time;
+    sample.viewpoint_W = Vector3f(static_cast<float>(0.1 * to_seconds(time)), 0.0F, 0.0F);
+    sample.offset_m = Vector3f::Zero();
+    voxel = seen(voxel, sample, config);
+  }
+  void operator()(double intensity, double saturated = 0.0, double spread = 0.0, double doubt = 0.0) {
+    show({.time = {},
+          .viewpoint_W = {},
+          .offset_m = {},
+          .intensity = static_cast<float>(intensity),
+          .doubt = static_cast<float>(doubt),
+          .saturated = static_cast<float>(saturated),
+          .spread = static_cast<float>(spread)});
   }
   /// Beside an edge of the image.
   void beside(double intensity, double dip, double rise) {
-    time += std::chrono::milliseconds(100);
-    voxel = seen(voxel,
-                 {.time = time,
-                  .viewpoint_W = Vector3f(static_cast<float>(0.1 * to_seconds(time)), 0.0F, 0.0F),
-                  .offset_m = Vector3f::Zero(),
-                  .intensity = static_cast<float>(intensity),
-                  .dip = static_cast<float>(dip),
-                  .rise = static_cast<float>(rise)},
-                 config);
+    show({.time = {},
+          .viewpoint_W = {},
+          .offset_m = {},
+          .intensity = static_cast<float>(intensity),
+          .dip = static_cast<float>(dip),
+          .rise = static_cast<float>(rise)});
   }
   void noisy(Random& random, double mean, double sigma, int images) {
     for (int i = 0; i < images; ++i) (*this)(mean + random.normal(sigma));

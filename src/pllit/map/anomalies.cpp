@@ -213,22 +213,22 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
   constexpr int kStillFrames = 15;  // a rig that stands sees it in all of them, one that passes by in a few
   constexpr int kFewestSeeds = 2, kMostJoined = 5;  // one voxel's mistake must not take in a whole cabinet
   Anomaly& anomaly = track.anomaly;
-  const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
-  if (anomaly.state == AnomalyState::fresh) {
-    const bool stays = members.left <= config_.max_leaving * members.all;
-    if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
-    if (members.change < map.model.min_change * members.hot) return;
-    const int seeds = members.known + members.new_surfaces;
-    if (seeds < std::max(kFewestSeeds, members.hot / kMostJoined)) return;
-    const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
-    const bool watched_long =
-        to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;
-    if (anomaly.views < views && !watched_long) return;
-    anomaly.state = AnomalyState::confirmed;
-    anomaly.confirmed = now;
+  if (anomaly.state != AnomalyState::fresh) {
+    anomaly.state = state_of(watch_, anomaly.id);
     return;
   }
-  anomaly.state = state_of(watch_, anomaly.id);
+  const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
+  const bool stays = members.left <= config_.max_leaving * members.all;
+  if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
+  if (members.change < map.model.min_change * members.hot) return;
+  const int seeds = members.known + members.new_surfaces;
+  if (seeds < std::max(kFewestSeeds, members.hot / kMostJoined)) return;
+  const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
+  const bool watched_long =
+      to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;
+  if (anomaly.views < views && !watched_long) return;
+  anomaly.state = AnomalyState::confirmed;
+  anomaly.confirmed = now;
 }
 
 void AnomalyDetector::drop_vanished(Time now) {

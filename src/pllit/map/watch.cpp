@@ -26,25 +26,6 @@ void for_older_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey ke
   });
 }
 
-Vector3d ray_W(const WatchInput& input, VoxelKey key) {
-  return (input.map.position_W(key, *input.map.find(key)) - input.sight.p_W).normalized();
-}
-
-/// Calls visit(voxel) for the voxels that the image shows within an angle of one, whatever their distance, if they are
-/// older than a time and not watched themselves.
-template <class Visit>
-void for_older_in_view(const WatchInput& input, const Watch& watch, VoxelKey key, double deg, Time before,
-                       const Visit& visit) {
-  const double least_cos = std::cos(deg * std::numbers::pi / 180.0);
-  const Vector3d towards_W = ray_W(input, key);
-  for (const VoxelKey seen : input.seen) {
-    const ThermalVoxel& voxel = *input.map.find(seen);
-    if (seen != key && was_there(voxel, before) && ray_W(input, seen).dot(towards_W) > least_cos &&
-        !watch.contains(seen))
-      visit(voxel);
-  }
-}
-
 /// Whether something next to it has always been nearly as hot, or at times: calibration is good to a few pixels only,
 /// and what lies on a seam shows now the one side and now the other.
 bool explained_by_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey key, float hot, float change,
@@ -63,6 +44,23 @@ struct Normal {
   float value, sigma;
 };
 
+/// The normal intensities of older surfaces that the image shows around a point, whatever their distance.
+std::vector<double> around_in_view(const WatchInput& input, const Watch& watch, VoxelKey key, Time before,
+                                   const WatchConfig& config) {
+  const double least_cos = std::cos(config.surround_deg * std::numbers::pi / 180.0);
+  const auto ray_W = [&](VoxelKey of) -> Vector3d {
+    return (input.map.position_W(of, *input.map.find(of)) - input.sight.p_W).normalized();
+  };
+  const Vector3d towards_W = ray_W(key);
+  std::vector<double> values;
+  for (const VoxelKey seen : input.seen) {
+    const ThermalVoxel& voxel = *input.map.find(seen);
+    if (was_there(voxel, before) && !watch.contains(seen) && ray_W(seen).dot(towards_W) > least_cos)
+      values.push_back(static_cast<double>(voxel.mean));
+  }
+  return values;
+}
+
 /// By the older surfaces next to it, or where those are too few by those around it in the image: what stands behind it
 /// was to be seen in its place. Nothing where these are too few as well.
 std::optional<Normal> surroundings(const WatchInput& input, const Watch& watch, VoxelKey key, Time before,
@@ -72,12 +70,7 @@ std::optional<Normal> surroundings(const WatchInput& input, const Watch& watch, 
   for_older_neighbours(map, watch, key, config.surround_voxels, before,
                        [&](const ThermalVoxel& voxel) { values.push_back(static_cast<double>(voxel.mean)); });
   auto around = surroundings_of(std::move(values));
-  if (!around) {  // values has been moved from
-    values.clear();
-    for_older_in_view(input, watch, key, config.surround_deg, before,
-                      [&](const ThermalVoxel& voxel) { values.push_back(static_cast<double>(voxel.mean)); });
-    around = surroundings_of(std::move(values));
-  }
+  if (!around) around = surroundings_of(around_in_view(input, watch, key, before, config));
   if (!around) return std::nullopt;
   return Normal{static_cast<float>(around->upper),
                 static_cast<float>(std::max(map.config().model.noise, around->spread))};
