@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/random_states.hpp"
 
 namespace pllit {
@@ -73,6 +75,38 @@ TEST(RecentSurface, LosesWhatTheLastScansSeeThrough) {
   for (const Vector3f& p_W : surface.points(kAhead).points_W) ++(p_W.z() < 2.2F ? left : wall);
   EXPECT_LT(left, before / 10);
   EXPECT_GT(wall, 300u);
+}
+
+TEST(RecentSurface, ShowsOfAViewAllThatLiesInIt) {
+  Random random(5);
+  RecentSurface surface({});
+  std::vector<Vector3f> points_W;
+  for (int i = 0; i < 20000; ++i)
+    points_W.push_back((random.uniform(1.0, 9.0) * random.vector(1.0).normalized()).cast<float>());
+  surface.add(points_W, Vector3d::Zero(), at(0), towards_camera);
+  const std::vector<Vector3f> all_W = surface.points({Vector3d::Zero(), Vector3d::UnitZ(), -1.0}).points_W;
+  EXPECT_EQ(all_W.size(), surface.size());
+  for (const double least_cos : {0.0, 0.5, 0.9}) {
+    const ViewCone view{random.vector(0.3), random.vector(1.0).normalized(), least_cos};
+    const auto inside =
+        std::ranges::count_if(all_W, [&](const Vector3f& p_W) { return view.contains(p_W.cast<double>()); });
+    EXPECT_EQ(surface.points(view).points_W.size(), static_cast<std::size_t>(inside));
+    EXPECT_GT(inside, 100);
+  }
+}
+
+TEST(RecentSurface, HoldsNoMoreAfterALongWayThanAfterAShortOne) {
+  Random random(6);
+  RecentSurface surface({.memory_m = 0.5});
+  std::size_t early = 0;
+  for (int step = 0; step < 400; ++step) {
+    const Vector3d centre_W(0.25 * step, 0.0, 0.0);
+    std::vector<Vector3f> points_W = square(random, 2.0, 300);
+    for (Vector3f& p_W : points_W) p_W += centre_W.cast<float>();
+    surface.add(points_W, centre_W, at(100 * step), towards_camera);
+    if (step == 100) early = surface.bytes();
+  }
+  EXPECT_LE(surface.bytes(), 2 * early);
 }
 
 TEST(ViewCone, HoldsAllThatTheImageShows) {

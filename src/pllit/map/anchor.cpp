@@ -2,8 +2,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
+#include <map>
 
 #include "pllit/base/robust.hpp"
 
@@ -37,17 +41,6 @@ AnchorCurve inverse(const View& view) {
     curve.offsets.push_back(view.knots[i] - curve.gain * now - curve.bias);
   }
   return curve;
-}
-
-/// The line from all pairs, middle to middle and width to width: where a search may begin after a jump.
-AnchorCurve through_quantiles(std::span<const AnchorPair> pairs, const AnchorCurve& before) {
-  const auto now = column(pairs, &AnchorPair::now), normal = column(pairs, &AnchorPair::normal);
-  const double now_width = quantile(now, 0.85) - quantile(now, 0.15),
-               normal_width = quantile(normal, 0.85) - quantile(normal, 0.15);
-  AnchorCurve line{.lens = before.lens};
-  if (now_width > 1.0 && normal_width > 1.0) line.gain = std::clamp(normal_width / now_width, 0.2, 5.0);
-  line.bias = quantile(normal, 0.5) - line.gain * quantile(now, 0.5);
-  return line;
 }
 
 /// Errors of neighbouring pairs are alike (lens, registration): no more of them count as independent.
@@ -130,6 +123,36 @@ std::vector<AnchorPair> without_lens(std::span<const AnchorPair> pairs, double l
   return corrected;
 }
 
+/// Through what is seen of surfaces alike, in the median: where a search may begin after a jump, and where surfaces
+/// come into sight that are darker or brighter than any before, so that the curve so far was a guess there.
+AnchorCurve through_medians(std::span<const AnchorPair> pairs, const AnchorCurve& before) {
+  constexpr std::size_t kBins = 16, kFewest = 10;
+  const std::vector<AnchorPair> flat = without_lens(pairs, before.lens);
+  const auto now = column(flat, &AnchorPair::now), normal = column(flat, &AnchorPair::normal);
+  const double now_width = quantile(now, 0.85) - quantile(now, 0.15),
+               normal_width = quantile(normal, 0.85) - quantile(normal, 0.15);
+  View view;
+  if (now_width > 1.0 && normal_width > 1.0) view.slope = 1.0 / std::clamp(normal_width / now_width, 0.2, 5.0);
+  view.offset = quantile(now, 0.5) - view.slope * quantile(normal, 0.5);
+
+  const double low = quantile(normal, 0.005), high = std::max(low + 1.0, quantile(normal, 0.995));
+  std::array<std::vector<AnchorPair>, kBins> bins;
+  for (const AnchorPair& pair : flat) {
+    const double share = std::clamp((pair.normal - low) / (high - low), 0.0, 0.999);
+    bins[static_cast<std::size_t>(share * kBins)].push_back(pair);
+  }
+  for (const std::vector<AnchorPair>& bin : bins) {
+    if (bin.size() < kFewest) continue;
+    view.knots.push_back(quantile(column(bin, &AnchorPair::normal), 0.5));
+    view.extra.push_back(quantile(column(bin, &AnchorPair::now), 0.5) - view.slope * view.knots.back() - view.offset);
+  }
+  if (view.knots.size() < 2) view.knots = view.extra = {};
+  keep_increasing(view);
+  AnchorCurve curve = inverse(view);
+  curve.lens = before.lens;
+  return curve;
+}
+
 /// What is left of the lens in pairs that a curve brings to the map, in the image's unit.
 double lens_left(std::span<const AnchorPair> pairs, const AnchorCurve& curve, double width) {
   constexpr double kLensChange = 3.0;  // from image to image, one sigma
@@ -167,21 +190,51 @@ AnchorCurve refined(std::span<const AnchorPair> pairs, AnchorCurve curve, const 
   return curve;
 }
 
+/// Weights of pairs by the intensity that they are seen with.
+struct Agreement {
+  double agreeing = 0.0, all = 0.0;
+};
+
+/// The intensities around those that most pairs agree on, up to where more than a few contradict the curve, and fewer
+/// agree.
+std::pair<double, double> undisputed(const std::map<int, Agreement>& bins, double bin_width) {
+  constexpr double kFew = 0.01, kInfinity = std::numeric_limits<double>::infinity();
+  double total = 0.0;
+  for (const auto& [bin, weights] : bins) total += weights.all;
+  const auto most = std::ranges::max_element(bins, {}, [](const auto& bin) { return bin.second.agreeing; });
+  const auto disputed = [total](const auto& bin) {
+    const Agreement& weights = bin.second;
+    return weights.agreeing < 0.4 * weights.all && weights.all - weights.agreeing > kFew * total;
+  };
+  const auto above = std::find_if(most, bins.end(), disputed);
+  const auto below = std::find_if(std::reverse_iterator(std::next(most)), bins.rend(), disputed);
+  return {below == bins.rend() ? -kInfinity : bin_width * (below->first + 1),
+          above == bins.end() ? kInfinity : bin_width * above->first};
+}
+
 /// Notes between which intensities surfaces that are known without doubt hold the curve, but for a few at each end.
 void note_support(std::span<const AnchorPair> pairs, const std::vector<double>& residuals, const AnchorConfig& config,
                   AnchorCurve& curve) {
   constexpr double kEnds = 0.01;
+  const double bin_width = config.loss / curve.gain;
   std::vector<std::pair<double, double>> agreeing;  // intensity without the lens, weight
-  double total = 0.0;
+  std::map<int, Agreement> bins;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const AnchorPair& pair = pairs[i];
-    if (std::abs(residuals[i]) >= config.loss) continue;
+    const double now = pair.now - curve.lens * pair.radius2;
     const auto weight = static_cast<double>(pair.weight * pair.trust);
-    agreeing.emplace_back(pair.now - curve.lens * pair.radius2, weight);
-    total += weight;
+    Agreement& bin = bins[static_cast<int>(std::floor(now / bin_width))];
+    bin.all += weight;
+    if (std::abs(residuals[i]) >= config.loss) continue;
+    bin.agreeing += weight;
+    agreeing.emplace_back(now, weight);
   }
   if (agreeing.empty()) return;
+  const auto [from, to] = undisputed(bins, bin_width);
+  std::erase_if(agreeing, [&](const auto& pair) { return pair.first < from || pair.first > to; });
   std::ranges::sort(agreeing);
+  double total = 0.0;
+  for (const auto& pair : agreeing) total += pair.second;
   const auto end = [&](auto begin, auto stop) {
     double sum = 0.0;
     while (begin + 1 != stop && (sum += begin->second) < kEnds * total) ++begin;
@@ -246,14 +299,16 @@ std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<Su
   std::vector<AnchorPair> pairs;
   for (const SurfaceObservation& observation : observations) {
     const ThermalVoxel* voxel = map.find(map.key_at(observation.p_W));
-    if (!voxel || voxel->images < kFewest || voxel->changes > 0) continue;
+    if (!voxel || voxel->images < kFewest) continue;
+    // What has lately looked unusual ties the image less and less; at first it may be the curve that is wrong.
     const float known = std::min(static_cast<float>(voxel->images), learned_after) / learned_after,
+                usual = 1.0F / (1.0F + static_cast<float>(voxel->changes)),
                 doubt = voxel->doubt / static_cast<float>(map.config().model.noise);
     pairs.push_back({.now = observation.intensity,
                      .normal = voxel->mean,
                      .radius2 = static_cast<float>(squared_radius(observation.pixel_px, camera)),
                      .normal_variance = voxel->variance(map.config().model) / static_cast<float>(voxel->images),
-                     .weight = known,
+                     .weight = known * usual,
                      .trust = 1.0F / (1.0F + doubt * doubt)});
   }
   return pairs;
@@ -266,7 +321,7 @@ AnchorFit anchor_curve(std::span<const AnchorPair> pairs, const AnchorCurve& bef
   if (config.shape == AnchorConfig::Shape::bias) {
     curve = shifted(pairs);
   } else {
-    const AnchorCurve a = refined(pairs, before, config), b = refined(pairs, through_quantiles(pairs, before), config);
+    const AnchorCurve a = refined(pairs, before, config), b = refined(pairs, through_medians(pairs, before), config);
     curve = robust_cost(pairs, a, config.loss) <= 1.1 * robust_cost(pairs, b, config.loss) ? a : b;
   }
   std::vector<double> residuals;

@@ -59,19 +59,20 @@ struct AnchorFit {
   bool holds = false;   ///< enough inliers; otherwise the curve is the one before
 };
 
-/// Pairs of an image's observations with voxels that have been seen a few times and that nothing has changed in.
+/// Pairs of an image's observations with voxels that have been seen a few times; the longer one has looked unusual, the
+/// less it weighs.
 std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<SurfaceObservation>& observations,
                                      const Camera& camera);
 /// Squared distance of a pixel from the middle of the image, 1 in its corners.
 double squared_radius(const Eigen::Vector2f& pixel_px, const Camera& camera);
 
 /// Robust fit by reweighted least squares with a loss that narrows (graduated non-convexity: Blake and Zisserman 1987),
-/// from the curve before and from the line that takes the quantiles of all pairs to each other, whichever explains
-/// more. What is seen is regressed on what is known, whose noise is less and is taken into account: the other way round
-/// the noise of every image would flatten the curve, and surfaces learned through it those of the next ones, until
-/// nothing differed any more. Where the surfaces in sight hardly differ, the gain stays near the one before. What is
-/// hot cannot drag the curve: its pairs lie off the one that the others agree on, and because it increases, intensities
-/// above those of all unchanged surfaces stay above.
+/// from the curve before and from the one through the medians of surfaces alike, whichever explains more. What is seen
+/// is regressed on what is known, whose noise is less and is taken into account: the other way round the noise of every
+/// image would flatten the curve, and surfaces learned through it those of the next ones, until nothing differed any
+/// more. Where the surfaces in sight hardly differ, the gain stays near the one before. What is hot cannot drag the
+/// curve: its pairs lie off the one that the others agree on, and because it increases, intensities above those of all
+/// unchanged surfaces stay above.
 AnchorFit anchor_curve(std::span<const AnchorPair> pairs, const AnchorCurve& before, const AnchorConfig& config);
 
 }  // namespace pllit

@@ -80,6 +80,14 @@ Members members_of(const Watch& watch, std::uint32_t id, Time now, double dwell_
   return members;
 }
 
+/// Voxels of which so much of the change is left however they lie to the edges of the image.
+int sure_voxels(const Watch& watch, std::uint32_t id, double least) {
+  return static_cast<int>(std::ranges::count_if(watch, [&](const auto& entry) {
+    const WatchedVoxel& watched = entry.second;
+    return watched.owner == id && watched.hot && static_cast<double>(watched.sure) >= least;
+  }));
+}
+
 /// The part of an image that shows an anomaly, with a margin around it.
 std::optional<ImageCrop> crop_of(const Watch& watch, std::uint32_t id, const ThermalView& view, double voxel_m) {
   constexpr float kMargin_px = 24.0F;
@@ -223,6 +231,7 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
   if (members.change < map.model.min_change * members.hot) return;
   const int seeds = members.known + members.new_surfaces;
   if (seeds < std::max(kFewestSeeds, members.hot / kMostJoined)) return;
+  if (sure_voxels(watch_, anomaly.id, config_.sure_share * map.model.min_change) < kFewestSeeds) return;
   const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
   const bool watched_long =
       to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;

@@ -16,8 +16,11 @@ struct AnomalyConfig {
   int min_views = 2;  ///< viewpoints that it must have been hot from, twice as many where it is one voxel thick: what
                       ///< is seen past an edge moves ...
   double still_dwell_s = 3.0;  ///< ... or how long, for a rig that stands
-  double join_m = 0.1;         ///< hot voxels in neighbouring cells of this size are one anomaly
-  double max_leaving = 0.3;    ///< clusters of which a greater share has left their place are moving: people, vehicles
+  /// So much of the least change must be left in two voxels however they lie to the edges of the image: at its edge a
+  /// hot thing may be a seam that is seen a few pixels off, inside it is one.
+  double sure_share = 0.67;
+  double join_m = 0.1;       ///< hot voxels in neighbouring cells of this size are one anomaly
+  double max_leaving = 0.3;  ///< clusters of which a greater share has left their place are moving: people, vehicles
   double registration_m = 0.02;  ///< how well images and surfaces lie on each other, one sigma
   double forget_fresh_s = 10.0;  ///< what was never confirmed is dropped when not seen for so long
 };

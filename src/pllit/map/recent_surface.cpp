@@ -1,6 +1,7 @@
 #include "pllit/map/recent_surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pllit {
 
@@ -12,21 +13,53 @@ ViewCone view_cone(const SE3& T_W_C, const Camera& camera) {
   return {T_W_C.translation(), T_W_C.rotation().col(2), std::max(0.0, least_cos - kMargin)};
 }
 
-Vector3f RecentSurface::mean_W(VoxelKey key, const Cell& cell) const {
-  const Vector3f centre_W =
-      (config_.voxel_m * (voxel_of_key(key).cast<double>() + Vector3d::Constant(0.5))).cast<float>();
-  return centre_W + cell.offset_sum_m / cell.points;
+Vector3f RecentSurface::centre_W(const Block& block, const Cell& cell) const {
+  const Eigen::Vector3i within(cell.place / (kSide * kSide), cell.place / kSide % kSide, cell.place % kSide);
+  return (config_.voxel_m * ((block.corner + within).cast<double>() + Vector3d::Constant(0.5))).cast<float>();
 }
 
-bool RecentSurface::counts(VoxelKey key, const Cell& cell) const {
+bool RecentSurface::counts(const Block& block, const Cell& cell) const {
   return cell.points > 0.0F && way_m_ - cell.way_m < config_.memory_m &&
          to_seconds(now_ - cell.last) < config_.memory_s &&
-         (mean_W(key, cell).cast<double>() - centre_W_).squaredNorm() < config_.radius_m * config_.radius_m;
+         (mean_W(block, cell).cast<double>() - centre_W_).squaredNorm() < config_.radius_m * config_.radius_m;
+}
+
+RecentSurface::Cell& RecentSurface::cell_at(const Eigen::Vector3i& voxel) {
+  const auto block_at = [](int i) { return i >= 0 ? i / kSide : (i + 1) / kSide - 1; };
+  const Eigen::Vector3i at = voxel.unaryExpr(block_at), within = voxel - kSide * at;
+  std::uint32_t& number = *block_of_.insert(voxel_key(at)).first;
+  if (number == 0) {
+    if (spare_.empty()) {
+      blocks_.emplace_back();
+      spare_.push_back(static_cast<std::uint32_t>(blocks_.size()));
+    }
+    number = spare_.back();
+    spare_.pop_back();
+    blocks_[number - 1].corner = kSide * at;
+  }
+  Block& block = blocks_[number - 1];
+  const auto place = static_cast<std::uint16_t>((within.x() * kSide + within.y()) * kSide + within.z());
+  std::uint16_t& cell = block.cell_of[place];
+  if (cell == 0) {
+    block.cells.push_back({.place = place});
+    cell = static_cast<std::uint16_t>(block.cells.size());
+    ++size_;
+  }
+  return block.cells[cell - 1U];
+}
+
+void RecentSurface::sweep(Block& block) {
+  const std::size_t erased = std::erase_if(block.cells, [&](const Cell& cell) { return !counts(block, cell); });
+  if (erased == 0) return;
+  size_ -= erased;
+  block.cell_of.fill(0);
+  for (std::size_t i = 0; i < block.cells.size(); ++i)
+    block.cell_of[block.cells[i].place] = static_cast<std::uint16_t>(i + 1);
 }
 
 void RecentSurface::add(std::span<const Vector3f> points_W, const Vector3d& centre_W, Time time,
                         const NormalAt& normal_at) {
-  if (!cells_.size()) centre_W_ = centre_W;
+  if (size_ == 0) centre_W_ = centre_W;
   way_m_ += (centre_W - centre_W_).norm();
   centre_W_ = centre_W;
   now_ = time;
@@ -34,8 +67,8 @@ void RecentSurface::add(std::span<const Vector3f> points_W, const Vector3d& cent
   for (const Vector3f& p_W : points_W) {
     if ((p_W.cast<double>() - centre_W).squaredNorm() > config_.radius_m * config_.radius_m) continue;
     const Eigen::Vector3i voxel = voxel_of(p_W, 1.0 / config_.voxel_m);
-    Cell& cell = *cells_.insert(voxel_key(voxel)).first;
-    if (cell.points == 0.0F) cell = {};
+    Cell& cell = cell_at(voxel);
+    if (cell.points == 0.0F) cell = {.place = cell.place};
     const Vector3d voxel_W = config_.voxel_m * (voxel.cast<double>() + Vector3d::Constant(0.5));
     cell.offset_sum_m += (p_W.cast<double>() - voxel_W).cast<float>();
     cell.points += 1.0F;
@@ -45,33 +78,42 @@ void RecentSurface::add(std::span<const Vector3f> points_W, const Vector3d& cent
       cell.normal_W = normal_at(p_W.cast<double>());
   }
   constexpr std::size_t kSweepIn = 20;  // scans
-  swept_to_ = cells_.retain_some(swept_to_, cells_.slots() / kSweepIn + 1,
-                                 [&](VoxelKey key, const Cell& cell) { return counts(key, cell); });
+  swept_to_ = block_of_.retain_some(swept_to_, block_of_.slots() / kSweepIn + 1, [&](VoxelKey, std::uint32_t number) {
+    sweep(blocks_[number - 1]);
+    const bool is_empty = blocks_[number - 1].cells.empty();
+    if (is_empty) spare_.push_back(number);
+    return !is_empty;
+  });
 }
 
 std::vector<Vector3d> RecentSurface::carve(const Sight& sight, const SightConfig& config) {
-  std::vector<VoxelKey> left;
   std::vector<Vector3d> places_W;
-  cells_.for_each([&](VoxelKey key, const Cell& cell) {
-    if (cell.last == sight.time || !counts(key, cell)) return;
-    const Vector3d p_W = mean_W(key, cell).cast<double>();
-    if (look_around(sight, p_W, config) != PointSight::free) return;
-    left.push_back(key);
-    places_W.push_back(p_W);
-  });
-  for (const VoxelKey key : left) cells_.insert(key).first->points = 0.0F;
+  for (Block& block : blocks_)
+    for (Cell& cell : block.cells) {
+      if (cell.last == sight.time || !counts(block, cell)) continue;
+      const Vector3d p_W = mean_W(block, cell).cast<double>();
+      if (look_around(sight, p_W, config) != PointSight::free) continue;
+      cell.points = 0.0F;
+      places_W.push_back(p_W);
+    }
   return places_W;
 }
 
 SurfacePoints RecentSurface::points(const ViewCone& view) const {
+  const double side_m = kSide * config_.voxel_m, radius_m = 0.5 * std::sqrt(3.0) * side_m;
   SurfacePoints points;
-  cells_.for_each([&](VoxelKey key, const Cell& cell) {
-    if (!counts(key, cell)) return;
-    const Vector3f p_W = mean_W(key, cell);
-    if (!view.contains(p_W.cast<double>())) return;
-    points.points_W.push_back(p_W);
-    points.normals_W.push_back(cell.normal_W);
-  });
+  for (const Block& block : blocks_) {
+    if (block.cells.empty()) continue;
+    const Vector3d middle_W = config_.voxel_m * block.corner.cast<double>() + Vector3d::Constant(0.5 * side_m);
+    if (!view.may_show(middle_W, radius_m)) continue;
+    for (const Cell& cell : block.cells) {
+      if (!counts(block, cell)) continue;
+      const Vector3f p_W = mean_W(block, cell);
+      if (!view.contains(p_W.cast<double>())) continue;
+      points.points_W.push_back(p_W);
+      points.normals_W.push_back(cell.normal_W);
+    }
+  }
   return points;
 }
 

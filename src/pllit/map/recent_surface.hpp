@@ -2,6 +2,9 @@
 // camera may not see, and what hides it may not have been measured yet.
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -29,6 +32,13 @@ struct ViewCone {
     const Vector3d ray_W = p_W - apex_W;
     return ray_W.dot(axis_W) > least_cos * ray_W.norm();
   }
+  /// Whether it holds any point of a ball; true as well for some balls next to it.
+  bool may_show(const Vector3d& middle_W, double radius_m) const {
+    const Vector3d ray_W = middle_W - apex_W;
+    const double along_m = ray_W.dot(axis_W), across_m = (ray_W - along_m * axis_W).norm();
+    const double sine = std::sqrt(1.0 - least_cos * least_cos);
+    return across_m * least_cos - along_m * sine < radius_m;  // distance from the cone's side
+  }
 };
 ViewCone view_cone(const SE3& T_W_C, const Camera& camera);
 
@@ -45,22 +55,41 @@ class RecentSurface {
   std::vector<Vector3d> carve(const Sight& sight, const SightConfig& config);
   /// One point a voxel, the mean of those measured, in a view.
   SurfacePoints points(const ViewCone& view) const;
-  std::size_t size() const { return cells_.size(); }
+  std::size_t size() const { return size_; }
+  /// Of memory, but for the cells.
+  std::size_t bytes() const { return block_of_.bytes() + blocks_.capacity() * sizeof(Block); }
 
  private:
+  /// Voxels that lie together: what an image cannot show is passed over by whole blocks.
+  static constexpr int kSide = 8, kVoxels = kSide * kSide * kSide;
   struct Cell {
     Vector3f offset_sum_m = Vector3f::Zero();  ///< from the voxel's centre
     float points = 0.0F;                       ///< 0: seen through, waits to be swept out
     Vector3f normal_W = Vector3f::Zero();
+    std::uint16_t place = 0;  ///< in its block
     Time last{};
     double way_m = 0.0;  ///< of the rig, when last measured
   };
-  Vector3f mean_W(VoxelKey key, const Cell& cell) const;
+  struct Block {
+    Eigen::Vector3i corner = Eigen::Vector3i::Zero();  ///< its first voxel
+    std::array<std::uint16_t, kVoxels> cell_of{};      ///< 1 + number of the cell at a place, 0: none
+    std::vector<Cell> cells{};
+  };
+
+  Cell& cell_at(const Eigen::Vector3i& voxel);
+  Vector3f centre_W(const Block& block, const Cell& cell) const;
+  Vector3f mean_W(const Block& block, const Cell& cell) const {
+    return centre_W(block, cell) + cell.offset_sum_m / cell.points;
+  }
   /// Neither seen through, nor old, nor far.
-  bool counts(VoxelKey key, const Cell& cell) const;
+  bool counts(const Block& block, const Cell& cell) const;
+  void sweep(Block& block);
 
   RecentSurfaceConfig config_;
-  VoxelTable<Cell> cells_;
+  VoxelTable<std::uint32_t> block_of_;  ///< 1 + number of the block
+  std::vector<Block> blocks_;
+  std::vector<std::uint32_t> spare_;  ///< numbers of blocks that hold nothing any more
+  std::size_t size_ = 0;
   std::size_t swept_to_ = 0;  ///< slot of the table
   Vector3d centre_W_ = Vector3d::Zero();
   double way_m_ = 0.0;

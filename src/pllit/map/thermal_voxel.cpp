@@ -63,8 +63,7 @@ void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfi
   const bool changed = voxel.hot ? d > static_cast<float>(config.release_sigmas) * sigma : std::abs(d) > limit;
   if (changed) {
     remember_change(voxel, sample);
-    if (voxel.changes >= config.hits && voxel.changed_mean - voxel.mean > limit &&
-        voxel.sure_change() > static_cast<float>(config.sure_change))
+    if (voxel.changes >= config.hits && voxel.changed_mean - voxel.mean > limit && voxel.sure_change() > 0.0F)
       voxel.hot = true;
     return;
   }

@@ -9,15 +9,14 @@
 namespace pllit {
 
 struct VoxelModelConfig {
-  double noise = 6.0;        ///< least standard deviation: sensor, calibration, rounding; in the map's unit
-  int learned_after = 12;    ///< images before a voxel's normal intensity is known
-  int learned_views = 2;     ///< from so many viewpoints, or in five times as many images where the rig stands
-  int passing_images = 4;    ///< or after so many, when the rig has gone by and ...
-  double passing_s = 5.0;    ///< ... comes back after so long
-  double adaptation = 0.02;  ///< weight of each later image: the normal intensity fades in 50 images
-  double gate_sigmas = 3.0;  ///< beyond this an image does not count as normal
-  double min_change = 30.0;  ///< nor does it beyond this, and a smaller change is never hot; in the map's unit
-  double sure_change = 0.0;  ///< of it more than this must be left however the surface lies to the edges of the image
+  double noise = 6.0;             ///< least standard deviation: sensor, calibration, rounding; in the map's unit
+  int learned_after = 12;         ///< images before a voxel's normal intensity is known
+  int learned_views = 2;          ///< from so many viewpoints, or in five times as many images where the rig stands
+  int passing_images = 4;         ///< or after so many, when the rig has gone by and ...
+  double passing_s = 5.0;         ///< ... comes back after so long
+  double adaptation = 0.02;       ///< weight of each later image: the normal intensity fades in 50 images
+  double gate_sigmas = 3.0;       ///< beyond this an image does not count as normal
+  double min_change = 30.0;       ///< nor does it beyond this, and a smaller change is never hot; in the map's unit
   double saturated_doubt = 60.0;  ///< one sigma of what is learned from saturated pixels; in the map's unit
   double release_sigmas = 2.0;    ///< what is hot stays so until it is within this
   int hits = 3;                   ///< images that must have shown a change

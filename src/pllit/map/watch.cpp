@@ -108,7 +108,7 @@ std::optional<Normal> cooler_before(const WatchInput& input, const Watch& watch,
   const Time before = voxel.first_seen - from_seconds(config.evidence_lead_s);
   const auto normal = normal_of_new(input, watch, key, voxel, before, config);
   if (!normal || !hot_against(voxel, *normal, input.spread, model)) return std::nullopt;
-  if (voxel.sure_change_from(normal->value) < static_cast<float>(model.sure_change)) return std::nullopt;
+  if (voxel.sure_change_from(normal->value) < 0.0F) return std::nullopt;
   const float change = voxel.mean - normal->value;
   if (explained_by_neighbours(input.map, watch, key, voxel.mean, change, before, config)) return std::nullopt;
   return normal;
@@ -149,10 +149,12 @@ float change_of_alike(const WatchInput& input, const Watch& watch, const Thermal
   return std::min(most, common_change(std::move(changes)));
 }
 
-void note_heat(WatchedVoxel& watched, float value, Time time) {
-  watched.change = value - watched.normal;
+void note_heat(WatchedVoxel& watched, const ThermalVoxel& voxel) {
+  const bool is_new = watched.new_surface;
+  watched.change = (is_new ? voxel.present() : voxel.changed_mean) - watched.normal;
   watched.peak = std::max(watched.peak, watched.change);
-  watched.last = watched.seen = time;
+  watched.sure = std::max(watched.sure, is_new ? voxel.sure_change_from(watched.normal) : voxel.sure_change());
+  watched.last = watched.seen = voxel.last_seen;
   watched.hot = true;
   ++watched.hits;
 }
@@ -173,7 +175,7 @@ void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const 
                        .normal = voxel.mean,
                        .sigma = sigma,
                        .position_W = input.map.position_W(key, voxel)};
-  note_heat(watched, voxel.changed_mean, voxel.last_seen);
+  note_heat(watched, voxel);
   watch.emplace(key, watched);
 }
 
@@ -208,21 +210,21 @@ void take_in_new(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const Wa
   } else {
     return;
   }
-  note_heat(watched, voxel.mean, voxel.last_seen);
+  note_heat(watched, voxel);
   watch.emplace(key, watched);
 }
 
 /// A watched voxel seen again.
-void follow(WatchedVoxel& watched, VoxelKey key, const ThermalVoxel& voxel, const ThermalMap& map) {
-  const VoxelModelConfig& model = map.config().model;
-  watched.position_W = map.position_W(key, voxel);
+void follow(WatchedVoxel& watched, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input) {
+  const VoxelModelConfig& model = input.map.config().model;
+  watched.position_W = input.map.position_W(key, voxel);
   watched.seen = voxel.last_seen;
   const float now = voxel.present();
   const float release = static_cast<float>(model.release_sigmas) * watched.sigma;
   const bool hot = watched.new_surface ? now - watched.normal > release : voxel.hot;
   if (hot && !watched.hot) watched.since = voxel.last_seen;  // heated anew
   if (hot)
-    note_heat(watched, now, voxel.last_seen);
+    note_heat(watched, voxel);
   else
     watched.hot = false;
 }
@@ -258,7 +260,7 @@ Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
   for (const VoxelKey key : input.seen) {
     const ThermalVoxel& voxel = *input.map.find(key);
     if (const auto found = watch.find(key); found != watch.end()) {
-      if (!is_away(found->second, input)) follow(found->second, key, voxel, input.map);
+      if (!is_away(found->second, input)) follow(found->second, key, voxel, input);
     } else if (voxel.hot) {
       take_in_known(watch, key, voxel, input, config);
     } else if (!voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits) &&

@@ -32,6 +32,7 @@ struct WatchedVoxel {
   float sigma = 0.0F;       ///< standard deviation of that
   float change = 0.0F;      ///< against it, the last one seen hot
   float peak = 0.0F;        ///< the greatest
+  float sure = 0.0F;        ///< the most that was left of it however the surface lies to the edges of the image
   std::uint32_t owner = 0;  ///< anomaly that it belongs to; 0: none
   Vector3d position_W = Vector3d::Zero();
 
