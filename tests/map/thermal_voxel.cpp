@@ -136,6 +136,24 @@ TEST(ThermalVoxel, ThatWasLearnedFromSaturatedPixelsIsNotHotForBeingBrighter) {
   }
 }
 
+TEST(ThermalVoxel, IsKnownByTheImagesThatWereNotSaturatedOnceThereAreSome) {
+  Shown shown;
+  for (int i = 0; i < 30; ++i) shown(240.0, 1.0);
+  for (int i = 0; i < 8; ++i) shown(230.0, 0.0);
+  EXPECT_NEAR(shown.voxel.mean, 230.0F, 2.0F);
+  EXPECT_LT(shown.voxel.sigma(shown.config), 10.0F);
+  for (int i = 0; i < 5; ++i) shown(290.0, 1.0);
+  EXPECT_TRUE(shown.voxel.hot);
+}
+
+TEST(ThermalVoxel, LearnsNothingFromSaturatedImagesWhereOthersSaidMore) {
+  Shown shown;
+  for (int i = 0; i < 20; ++i) shown(230.0, 0.0);
+  for (int i = 0; i < 50; ++i) shown(240.0, 1.0);
+  EXPECT_FLOAT_EQ(shown.voxel.mean, 230.0F);
+  EXPECT_FLOAT_EQ(shown.voxel.saturated, 0.0F);
+}
+
 TEST(ThermalVoxel, IsHotInSaturatedImagesToo) {
   Shown shown;
   for (int i = 0; i < 40; ++i) shown(100.0);

@@ -12,8 +12,13 @@ constexpr std::uint8_t kCalmImages = 3;
 /// From now on `squares` is a mean.
 void settle(ThermalVoxel& voxel) { voxel.squares /= static_cast<float>(std::max(1u, voxel.images - 1)); }
 
-/// Welford's recursion until learned, then exponential.
+/// Welford's recursion until learned, then exponential. An image that is saturated there says but "at least so bright":
+/// nothing where others said more, and what others say soon stands in the place of that.
 void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, const VoxelModelConfig& config) {
+  constexpr float kMostly = 0.5F, kHardly = 0.1F, kBetter = 0.3F;
+  const bool saturated = sample.saturated > kMostly;
+  if (saturated && voxel.images > 0 && voxel.saturated < kMostly) return;
+  const float least_weight = !saturated && voxel.saturated > kHardly ? kBetter : 0.0F;
   const float d = sample.intensity - voxel.mean;
   const auto approach = [&](float weight) {
     voxel.mean += weight * d;
@@ -24,14 +29,14 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   };
   if (!voxel.learned(config)) {
     ++voxel.images;
-    approach(1.0F / static_cast<float>(voxel.images));
+    approach(std::max(least_weight, 1.0F / static_cast<float>(voxel.images)));
     voxel.squares += d * (sample.intensity - voxel.mean);
     if (voxel.learned(config)) settle(voxel);
     return;
   }
   ++voxel.images;
-  const float weight =
-      weight_share * std::max(static_cast<float>(config.adaptation), 1.0F / static_cast<float>(voxel.images));
+  const float weight = weight_share * std::max({least_weight, static_cast<float>(config.adaptation),
+                                                1.0F / static_cast<float>(voxel.images)});
   approach(weight);
   voxel.squares = (1.0F - weight) * (voxel.squares + weight * d * d);
 }

@@ -1,9 +1,11 @@
 #include "pllit/slam/thermography.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <opencv2/core.hpp>
 
 #include "pllit/base/evenly.hpp"
@@ -123,10 +125,13 @@ bool Thermography::shutter_closed(const ThermographyInput& input) {
 void Thermography::remember_scan(const ThermographyInput& input) {
   if (input.points_W.empty()) return;
   const double reach_m = config_.sampling.max_range_m;
+  std::map<std::array<VoxelKey, 2>, Vector3f> normals_W;  // neighbouring points share their plane
   const auto normal_at = [&](const Vector3d& p_W) -> Vector3f {
     if (!input.planes || (p_W - input.T_W_C.translation()).norm() > 1.5 * reach_m) return Vector3f::Zero();
-    const auto plane = input.planes->plane_at(p_W);
-    return plane ? Vector3f(plane->normal_W().cast<float>()) : Vector3f(Vector3f::Zero());
+    const auto [at, is_new] = normals_W.try_emplace(input.planes->window_at(p_W).corners, Vector3f::Zero());
+    if (is_new)
+      if (const auto plane = input.planes->plane_at(p_W)) at->second = plane->normal_W().cast<float>();
+    return at->second;
   };
   scans_.push_back(evenly(input.points_W, static_cast<std::size_t>(config_.scan_points)));
   surface_.add(scans_.back(), input.T_W_C.translation(), input.time, normal_at);
