@@ -140,6 +140,29 @@ TEST(PoseGraph, ClosesASquareAndLeavesTheFirstPoseWhereItIs) {
   EXPECT_LT((poses[20].translation() - Vector3d(10.0, 10.0, 0.0)).norm(), 0.3);
 }
 
+/// The LiDAR did not see along the corridor: sigmas of kilometres along it, of millimetres across.
+TEST(PoseGraph, OfACorridorAlongWhichNothingWasObservedIsSolved) {
+  const Vector3d axis = Vector3d(2.0, 1.0, 0.1).normalized();
+  PoseGraph graph{.guesses_M = {SE3::Identity()}};
+  for (int i = 0; i < 200; ++i) {
+    Matrix6 covariance = 2e-6 * Matrix6::Identity();
+    covariance.bottomRightCorner<3, 3>() += std::pow(12.0 * i, 2) * axis * axis.transpose();
+    const SE3 step = pose_from(exp_so3(Vector3d(0.0, 0.0, 1e-3)), 2.0 * axis);
+    graph.odometry.push_back({i, i + 1, step, covariance});
+    graph.guesses_M.push_back(graph.guesses_M.back() * step);
+    graph.verticals.push_back({i + 1, Vector3d::UnitZ(), 2e-3});
+  }
+  for (const auto& poses : {optimised(graph), solved_while_growing(graph)}) {
+    ASSERT_EQ(poses.size(), graph.guesses_M.size());
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      ASSERT_LT((poses[i].translation() - graph.guesses_M[i].translation()).norm(), 0.5) << i;
+  }
+  const SE3 whole = graph.guesses_M.front().inverse() * graph.guesses_M.back() * pose_from(SO3::Identity(), 30.0 * axis);
+  graph.loops.push_back({0, 200, whole, 1e-4 * Matrix6::Identity()});
+  for (const auto& poses : {optimised(graph), optimised_robustly(graph).poses_M, solved_while_growing(graph)})
+    EXPECT_LT((poses.back().translation() - whole.translation()).norm(), 0.5);
+}
+
 TEST(PoseGraph, VerticalsTakeTheTiltOut) {
   PoseGraph graph = walked_square(0.0);
   // Every step pitches a little too far: the path climbs, though gravity says it does not.

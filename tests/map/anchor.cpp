@@ -114,6 +114,22 @@ TEST(AnchorPairs, OfSurfacesThatLookUnusualWeighLessFromImageToImage) {
   EXPECT_LT(weights.back(), 0.15F);
 }
 
+TEST(AnchorPairs, OfSurfacesThatWereSaturatedAreTrustedLittle) {
+  const Camera camera{.width = 320, .height = 256, .fx = 300.0, .fy = 300.0, .cx = 160.0, .cy = 128.0};
+  const auto trust_of = [&](bool saturated) {
+    ThermalMap map({});
+    const SurfaceObservation observation{.p_W = Vector3d(3.0, 0.0, 0.0),
+                                         .pixel_px = {160.0F, 128.0F},
+                                         .intensity = 250.0F,
+                                         .saturated = saturated};
+    for (int image = 0; image < 20; ++image)
+      map.integrate({.time = Time{std::chrono::milliseconds(100 * image)}, .observations = {observation}});
+    return anchor_pairs(map, {observation}, camera).at(0).trust;
+  };
+  EXPECT_FLOAT_EQ(trust_of(false), 1.0F);
+  EXPECT_LT(trust_of(true), 0.05F);
+}
+
 TEST(AnchorCurve, IsDoubtedWhereMostSurfacesContradictIt) {
   Random random(9);
   std::vector<AnchorPair> pairs;

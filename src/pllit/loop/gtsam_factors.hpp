@@ -2,6 +2,7 @@
 // compile.
 #pragma once
 
+#include <Eigen/Eigenvalues>
 #include <gtsam/geometry/Pose3.h>
 #include <gtsam/navigation/AttitudeFactor.h>
 #include <gtsam/nonlinear/NonlinearFactorGraph.h>
@@ -27,8 +28,17 @@ inline gtsam::BetweenFactor<gtsam::Pose3> between_factor(const RelativePose& mea
   return {key_of(measured.from), key_of(measured.to), to_gtsam(measured.T_from_to), noise};
 }
 
+/// Sigmas within what a solver in double precision can tell apart: along a corridor whose axis nothing observed they
+/// grow to kilometres, next to millimetres across it, and the system is singular to rounding.
+inline Matrix6 solvable(const Matrix6& covariance) {
+  constexpr double least = 1e-5, most = 10.0;  // rad, m
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(covariance);
+  const Vector6 variances = eigen.eigenvalues().cwiseMax(least * least).cwiseMin(most * most);
+  return eigen.eigenvectors() * variances.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 inline gtsam::SharedNoiseModel noise_of(const RelativePose& measured, double variance_factor = 1.0) {
-  return gtsam::noiseModel::Gaussian::Covariance(variance_factor * measured.covariance);
+  return gtsam::noiseModel::Gaussian::Covariance(solvable(variance_factor * measured.covariance));
 }
 
 inline gtsam::Pose3AttitudeFactor vertical_factor(const Upright& vertical) {

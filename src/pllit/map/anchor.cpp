@@ -295,7 +295,8 @@ double AnchorCurve::doubt(double intensity, double radius2) const {
 std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<SurfaceObservation>& observations,
                                      const Camera& camera) {
   constexpr std::uint32_t kFewest = 3;
-  const auto learned_after = static_cast<float>(map.config().model.learned_after);
+  const VoxelModelConfig& model = map.config().model;
+  const auto learned_after = static_cast<float>(model.learned_after);
   std::vector<AnchorPair> pairs;
   for (const SurfaceObservation& observation : observations) {
     const ThermalVoxel* voxel = map.find(map.key_at(observation.p_W));
@@ -303,11 +304,12 @@ std::vector<AnchorPair> anchor_pairs(const ThermalMap& map, const std::vector<Su
     // What has lately looked unusual ties the image less and less; at first it may be the curve that is wrong.
     const float known = std::min(static_cast<float>(voxel->images), learned_after) / learned_after,
                 usual = 1.0F / (1.0F + static_cast<float>(voxel->changes)),
-                doubt = voxel->doubt / static_cast<float>(map.config().model.noise);
+                doubt = std::hypot(voxel->doubt, voxel->saturated * static_cast<float>(model.saturated_doubt)) /
+                        static_cast<float>(model.noise);
     pairs.push_back({.now = observation.intensity,
                      .normal = voxel->mean,
                      .radius2 = static_cast<float>(squared_radius(observation.pixel_px, camera)),
-                     .normal_variance = voxel->variance(map.config().model) / static_cast<float>(voxel->images),
+                     .normal_variance = voxel->variance(model) / static_cast<float>(voxel->images),
                      .weight = known * usual,
                      .trust = 1.0F / (1.0F + doubt * doubt)});
   }

@@ -20,6 +20,7 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   if (saturated && voxel.images > 0 && voxel.saturated < kMostly) return;
   const float least_weight = !saturated && voxel.saturated > kHardly ? kBetter : 0.0F;
   const float d = sample.intensity - voxel.mean;
+  const float spread2 = least_weight > 0.0F ? 0.0F : d * d;  // what it differs by from a bound is no spread
   const auto approach = [&](float weight) {
     voxel.mean += weight * d;
     voxel.dip += weight * (sample.dip - voxel.dip);
@@ -30,7 +31,7 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   if (!voxel.learned(config)) {
     ++voxel.images;
     approach(std::max(least_weight, 1.0F / static_cast<float>(voxel.images)));
-    voxel.squares += d * (sample.intensity - voxel.mean);
+    if (spread2 > 0.0F) voxel.squares += d * (sample.intensity - voxel.mean);
     if (voxel.learned(config)) settle(voxel);
     return;
   }
@@ -38,7 +39,7 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   const float weight = weight_share * std::max({least_weight, static_cast<float>(config.adaptation),
                                                 1.0F / static_cast<float>(voxel.images)});
   approach(weight);
-  voxel.squares = (1.0F - weight) * (voxel.squares + weight * d * d);
+  voxel.squares = (1.0F - weight) * (voxel.squares + weight * spread2);
 }
 
 void remember_change(ThermalVoxel& voxel, const VoxelSample& sample) {
