@@ -2,7 +2,6 @@
 // compile.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <gtsam/geometry/Pose3.h>
 #include <gtsam/navigation/AttitudeFactor.h>
 #include <gtsam/nonlinear/NonlinearFactorGraph.h>
@@ -10,6 +9,7 @@
 #include <gtsam/nonlinear/Values.h>
 #include <gtsam/slam/BetweenFactor.h>
 #include <tbb/task_arena.h>
+#include <Eigen/Eigenvalues>
 
 #include "pllit/loop/pose_graph.hpp"
 
@@ -38,7 +38,7 @@ inline Matrix6 solvable(const Matrix6& covariance) {
 }
 
 inline gtsam::SharedNoiseModel noise_of(const RelativePose& measured, double variance_factor = 1.0) {
-  return gtsam::noiseModel::Gaussian::Covariance(solvable(variance_factor * measured.covariance));
+  return gtsam::noiseModel::Gaussian::Covariance(variance_factor * solvable(measured.covariance));
 }
 
 inline gtsam::Pose3AttitudeFactor vertical_factor(const Upright& vertical) {

@@ -35,7 +35,7 @@ std::vector<SE3> minimise(const PoseGraph& graph, const gtsam::NonlinearFactorGr
                           const std::vector<SE3>& poses_M, const std::vector<double>& loop_weights, int iterations) {
   gtsam::NonlinearFactorGraph factors = trusted;
   for (std::size_t i = 0; i < graph.loops.size(); ++i)
-    if (loop_weights[i] > 1e-6)
+    if (loop_weights[i] > 0.0)  // little is enough where the way between is hardly known
       factors.add(between_factor(graph.loops[i], noise_of(graph.loops[i], 1.0 / loop_weights[i])));
   gtsam::LevenbergMarquardtParams parameters;
   parameters.maxIterations = iterations;
