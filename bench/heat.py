@@ -49,7 +49,7 @@ def findings_of(row, seed, wanted):
         return None
     scored = subprocess.run([sequences.PLLIT, "eval", "--findings", str(scene), str(session), "--json"], check=True, capture_output=True, text=True)
     if wanted.pictures:
-        subprocess.run([str(PICTURES), str(bag), str(session), row["config"], "--scene", str(scene)], check=True)
+        subprocess.run(sequences.in_environment([str(PICTURES), str(bag), str(session), row["config"], "--scene", str(scene)]), check=True)
     return json.loads(scored.stdout)["findings"] | {"watched_s": summary["duration_s"]}
 
 

@@ -16,6 +16,8 @@ import statistics
 import subprocess
 import sys
 
+import sequences
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = pathlib.Path(os.environ.get("PLLIT_DATA", ROOT.parent / "shared" / "data")) / "trajectories"
 ROWS = {  # address without the seed, preset, file of the motion, yaw drifts in degrees a minute
@@ -36,7 +38,7 @@ def run(row, seed, drift, wanted):
         command += ["--motion", str(DATA / motion)]
     for setting in wanted.set:
         command += ["--set", setting]
-    done = subprocess.run(command, capture_output=True, text=True)
+    done = subprocess.run(sequences.in_environment(command), capture_output=True, text=True)
     if done.returncode != 0:
         print(f"{row} seed {seed}: {done.stderr[-2000:]}", file=sys.stderr)
         return None

@@ -23,6 +23,11 @@ TIERS = ["smoke", "short", "full"]
 COMPRESSED = {"ntu4dradlm"}  # presets that name a compressed topic
 
 
+def in_environment(command):
+    """A command of the build, so that it runs wherever this script does (setup/environment.sh)."""
+    return ["bash", "-c", '. "$0"; in_environment "$@"', str(ROOT / "setup" / "environment.sh")] + command
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tier", choices=TIERS, default="smoke", help="a tier holds the ones before it")
