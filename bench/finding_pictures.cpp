@@ -1,8 +1,8 @@
 // Draws what images show of each alarm of a session: bench_finding_pictures F.bag SESSION PRESET [--scene
-// F.scene.json]. A picture for each alarm, SESSION/alarm-ID.png: the image that shows its place best in each of several
-// looks at it, from long before it was first hot until the end, a row of crops around the place. With the scene of a
-// simulated recording also SESSION/object-NAME.png for each object that was to be found. The box is the finding's
-// extent.
+// F.scene.json]. A picture for each alarm, SESSION/alarm-ID.png: a row of crops around its place, three from images
+// before it was first hot and four from the first 25 that show the place afterwards. With the scene of a simulated
+// recording also SESSION/object-NAME.png for each object that was to be found, whose box is 20 cm wide; that of an
+// alarm is its extent.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ using namespace pllit;
 namespace fs = std::filesystem;
 
 constexpr int kHalf_px = 80, kScale = 2;
-constexpr std::size_t kBefore = 3, kAfter = 4;
+constexpr std::size_t kBefore = 3, kAfter = 4, kFirst = 25;
 
 /// An image and where it was taken.
 struct Look {
@@ -90,7 +90,7 @@ cv::Mat crop_of(const Look& look, const Subject& subject, const Camera& camera) 
   return crop;
 }
 
-/// At most `most` of the looks at a place that lie in a span, evenly spread.
+/// At most `most` of them, evenly spread.
 std::vector<const Look*> some(const std::vector<const Look*>& looks, std::size_t most) {
   std::vector<const Look*> chosen;
   for (std::size_t i = 0; i < std::min(most, looks.size()); ++i)
@@ -103,10 +103,8 @@ bool draw(const Subject& subject, const std::vector<Look>& looks, const Camera& 
   for (const Look& look : looks)
     if (pixel_of(subject.p_W, look, camera)) (look.time < subject.begins ? before : after).push_back(&look);
   std::vector<const Look*> chosen = some(before, kBefore);
-  for (const Look* look :
-       some({after.begin(), after.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(after.size(), 25))},
-            kAfter))
-    chosen.push_back(look);
+  after.resize(std::min(after.size(), kFirst));
+  for (const Look* look : some(after, kAfter)) chosen.push_back(look);
   if (chosen.empty()) return true;
   std::vector<cv::Mat> crops;
   for (const Look* look : chosen) crops.push_back(crop_of(*look, subject, camera));

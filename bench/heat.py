@@ -4,7 +4,7 @@ and how often something is reported that is none.
 
     bench/heat.py --rows A1 A2 A3 --seeds 10                    # seeds 1 to 10 of each row
     bench/heat.py --rows A2 --first-seed 31 --seeds 1 --pictures # with bench_finding_pictures: what images show of every alarm
-    bench/heat.py --rows A1 --name sure -- --set advanced.anomalies.sure_change=10
+    bench/heat.py --rows A1 --name calm -- --set advanced.anomalies.min_change=45
 
 Recordings are rendered once and kept up to --cache-gb in results/heat; runs that exist are not run again, so that a call that was
 interrupted goes on where it stopped. Loops stay open. The rate of false alarms comes with the upper end of its 95 % interval, for

@@ -18,9 +18,9 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   constexpr float kMostly = 0.5F, kHardly = 0.1F, kBetter = 0.3F;
   const bool saturated = sample.saturated > kMostly;
   if (saturated && voxel.images > 0 && voxel.saturated < kMostly) return;
-  const float least_weight = !saturated && voxel.saturated > kHardly ? kBetter : 0.0F;
+  const bool replaces_bound = !saturated && voxel.saturated > kHardly;  // what it differs by from that is no spread
+  const float least_weight = replaces_bound ? kBetter : 0.0F;
   const float d = sample.intensity - voxel.mean;
-  const float spread2 = least_weight > 0.0F ? 0.0F : d * d;  // what it differs by from a bound is no spread
   const auto approach = [&](float weight) {
     voxel.mean += weight * d;
     voxel.dip += weight * (sample.dip - voxel.dip);
@@ -31,7 +31,7 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   if (!voxel.learned(config)) {
     ++voxel.images;
     approach(std::max(least_weight, 1.0F / static_cast<float>(voxel.images)));
-    if (spread2 > 0.0F) voxel.squares += d * (sample.intensity - voxel.mean);
+    if (!replaces_bound) voxel.squares += d * (sample.intensity - voxel.mean);
     if (voxel.learned(config)) settle(voxel);
     return;
   }
@@ -39,7 +39,7 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
   const float weight = weight_share * std::max({least_weight, static_cast<float>(config.adaptation),
                                                 1.0F / static_cast<float>(voxel.images)});
   approach(weight);
-  voxel.squares = (1.0F - weight) * (voxel.squares + weight * spread2);
+  voxel.squares = (1.0F - weight) * (voxel.squares + (replaces_bound ? 0.0F : weight * d * d));
 }
 
 void remember_change(ThermalVoxel& voxel, const VoxelSample& sample) {

@@ -215,9 +215,9 @@ void take_in_new(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const Wa
 }
 
 /// A watched voxel seen again.
-void follow(WatchedVoxel& watched, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input) {
-  const VoxelModelConfig& model = input.map.config().model;
-  watched.position_W = input.map.position_W(key, voxel);
+void follow(WatchedVoxel& watched, VoxelKey key, const ThermalVoxel& voxel, const ThermalMap& map) {
+  const VoxelModelConfig& model = map.config().model;
+  watched.position_W = map.position_W(key, voxel);
   watched.seen = voxel.last_seen;
   const float now = voxel.present();
   const float release = static_cast<float>(model.release_sigmas) * watched.sigma;
@@ -260,7 +260,7 @@ Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
   for (const VoxelKey key : input.seen) {
     const ThermalVoxel& voxel = *input.map.find(key);
     if (const auto found = watch.find(key); found != watch.end()) {
-      if (!is_away(found->second, input)) follow(found->second, key, voxel, input);
+      if (!is_away(found->second, input)) follow(found->second, key, voxel, input.map);
     } else if (voxel.hot) {
       take_in_known(watch, key, voxel, input, config);
     } else if (!voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits) &&
