@@ -64,6 +64,30 @@ TEST(SightLog, KnowsThatAPlaceWasFreeBeforeSomethingCame) {
   EXPECT_FALSE(log.evidence({4.0, 0.0, 0.0}, after(6)).was_free());
 }
 
+TEST(SightLog, KnowsThatSomethingCameHoweverLongItHasBeenThereSince) {
+  SightLog log({.spacing_m = 0.01});
+  const Vector3d p_W(2.0, 0.0, 0.0);
+  for (int i = 0; i < 12; ++i) log.add(sight_at(after(i), {0.0, 0.01 * i, 0.0}, false));
+  for (int i = 12; i < 60; ++i) log.add(sight_at(after(i), {0.0, 0.01 * (i % 12), 0.0}, true));
+  const SightEvidence evidence = log.evidence(p_W, after(60));
+  EXPECT_GT(evidence.surface, 3 * evidence.free);
+  EXPECT_TRUE(evidence.was_free()) << evidence.free << " free";
+}
+
+TEST(SightLog, DoesNotTakeWhatIsSeenThroughFromAfarForFree) {
+  SightLog log({.spacing_m = 0.01});
+  const Vector3d p_W(2.0, 0.0, 0.0);
+  for (int i = 0; i < 12; ++i) log.add(sight_at(after(i), {-1.0, 0.01 * i, 0.0}, false));  // from a metre farther
+  for (int i = 12; i < 24; ++i) log.add(sight_at(after(i), {0.0, 0.01 * i, 0.0}, true));
+  EXPECT_FALSE(log.evidence(p_W, after(60)).was_free());
+}
+
+TEST(SightLog, DoesNotTakeTheRimOfAThingForFree) {
+  SightLog log({.spacing_m = 0.01});
+  for (int i = 0; i < 12; ++i) log.add(sight_at(after(i), {0.0, -0.08, 0.0}, true));  // its rays come from the origin
+  for (const double y_m : {0.17, 0.19, 0.195}) EXPECT_FALSE(log.evidence({2.0, y_m, 0.0}, after(60)).was_free()) << y_m;
+}
+
 TEST(SightLog, KeepsSightsWhereTheRigMovesOrStandsAndForgetsTheOldest) {
   SightLog log({.spacing_m = 0.25, .spacing_s = 10.0, .most = 5});
   for (int i = 0; i < 8; ++i) log.add({.time = after(i), .p_W = {0.1 * i, 0.0, 0.0}});

@@ -76,7 +76,7 @@ Submap LoopCloser::submap_around(std::size_t keyframe) const {
 LoopRecord LoopCloser::tried(const Anchor& here, const Submap& submap, const Candidate& candidate) const {
   const Anchor& there = anchors_[candidate.anchor];
   const LoopKeyframe &earlier = keyframes_[static_cast<std::size_t>(there.keyframe)],
-                 &later = keyframes_[static_cast<std::size_t>(here.keyframe)];
+                     &later = keyframes_[static_cast<std::size_t>(here.keyframe)];
   LoopRecord record{.earlier = there.keyframe,
                     .later = here.keyframe,
                     .earlier_time = earlier.time,
@@ -99,14 +99,9 @@ LoopRecord LoopCloser::tried(const Anchor& here, const Submap& submap, const Can
 }
 
 std::string LoopCloser::refusal(const LoopRecord& record) const {
-  constexpr double least_score = 0.3, most_tilt_rad = 3.0 * kDegree;
-  const Registration& r = record.registration;
-  const RegistrationConfig& c = config_.registration;
-  if (r.columns.score < least_score) return "the places do not look alike";
-  if (r.overlap < c.min_overlap) return std::format("overlap {:.2f}", r.overlap);
-  if (r.rmse_m > c.max_rmse_m) return std::format("rmse {:.3f} m", r.rmse_m);
-  if (r.information < c.min_information) return std::format("degenerate: {:.4f} of full information", r.information);
-  const Vector3d up_a = r.T_a_b.rotation().col(2);
+  constexpr double most_tilt_rad = 3.0 * kDegree;
+  if (std::string reason = pllit::refusal(record.registration, config_.registration); !reason.empty()) return reason;
+  const Vector3d up_a = record.registration.T_a_b.rotation().col(2);
   if (std::acos(std::clamp(up_a.z(), -1.0, 1.0)) > most_tilt_rad) return "tilted against gravity";
   if (record.against_odometry_m > plausible_m(record.earlier, record.later))
     return std::format("odometry never drifts that far: {:.1f} m", record.against_odometry_m);

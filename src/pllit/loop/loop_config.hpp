@@ -26,7 +26,8 @@ struct RegistrationConfig {
   double coarse_m = 1.5, fine_m = 0.5;  ///< voxels of the planes; points match planes within this distance
   int iterations = 12;                  ///< at most, of each
   double min_overlap = 0.6;             ///< share of the upright structure that meets the other submap's
-  double max_rmse_m = 0.09;             ///< of the matched points across their planes
+  double max_rmse_m = 0.09;             ///< of the matched points across their planes,
+  double max_rmse_of_own = 1.25;        ///< or this many times what the earlier place's own points are off them
   double min_information = 0.005;       ///< of the weakest direction, as a share of what planes facing it would give
   double sigma_m = 0.04, sigma_deg = 0.15;  ///< least uncertainty of a registration: submaps bend
 };

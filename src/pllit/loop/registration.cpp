@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <format>
 
 namespace pllit {
 namespace {
@@ -57,6 +58,8 @@ Sums linearised(const PlaneGrid& planes, const std::vector<Vector3f>& points_b, 
   return sums;
 }
 
+double rmse_m(const Sums& sums) { return std::sqrt(sums.squared_m2 / sums.matched); }
+
 struct Fit {
   SE3 T_a_b;
   Sums sums;
@@ -101,13 +104,15 @@ Registration refined(const Submap& a, const ColumnField& field, const Submap& b,
   const std::vector<Vector3f> points_b = evenly(b.points_H, matched_points);
   const Fit coarse =
       iterated(PlaneGrid(a.points_H, config.coarse_m), points_b, guess, 0.3 * config.coarse_m, config.iterations);
-  const Fit fine =
-      iterated(PlaneGrid(a.points_H, config.fine_m), points_b, coarse.T_a_b, 0.2 * config.fine_m, config.iterations);
+  const PlaneGrid planes(a.points_H, config.fine_m);
+  const double scale_m = 0.2 * config.fine_m;
+  const Fit fine = iterated(planes, points_b, coarse.T_a_b, scale_m, config.iterations);
   Registration result{.T_a_b = fine.T_a_b};
   if (fine.sums.matched < 20) return result;
   result.overlap = overlap(field, b.columns, in_plane(fine.T_a_b), overlap_radius_m);
   result.matched = static_cast<double>(fine.sums.matched) / static_cast<double>(points_b.size());
-  result.rmse_m = std::sqrt(fine.sums.squared_m2 / fine.sums.matched);
+  result.rmse_m = rmse_m(fine.sums);
+  result.own_rmse_m = rmse_m(linearised(planes, evenly(a.points_H, matched_points), SE3::Identity(), scale_m));
   result.information = weakest_information(fine.sums);
   result.covariance = covariance_of(fine.sums, result.rmse_m, config);
   return result;
@@ -168,6 +173,19 @@ Registration register_submaps(const Submap& a, const Submap& b, const SearchWind
   Registration result = refined(a, field, b, guess, config);
   result.columns = match;
   return result;
+}
+
+std::string refusal(const Registration& registration, const RegistrationConfig& config) {
+  constexpr double least_score = 0.3, clutter = 0.3;  // of the matching distance: points anywhere come to 0.4
+  const double max_rmse_m =
+      std::max(config.max_rmse_m, std::min(config.max_rmse_of_own * registration.own_rmse_m, clutter * config.fine_m));
+  if (registration.columns.score < least_score) return "the places do not look alike";
+  if (registration.overlap < config.min_overlap) return std::format("overlap {:.2f}", registration.overlap);
+  if (registration.rmse_m > max_rmse_m)
+    return std::format("rmse {:.3f} m of at most {:.3f} m", registration.rmse_m, max_rmse_m);
+  if (registration.information < config.min_information)
+    return std::format("degenerate: {:.4f} of full information", registration.information);
+  return "";
 }
 
 Registration refine(const Submap& a, const Submap& b, const SE3& T_a_b, const RegistrationConfig& config) {

@@ -1,6 +1,8 @@
 // How one submap lies on another: coarse to fine, with what speaks for and against the result.
 #pragma once
 
+#include <string>
+
 #include "pllit/geometry/voxel_table.hpp"
 #include "pllit/loop/column_search.hpp"
 #include "pllit/loop/loop_config.hpp"
@@ -13,6 +15,7 @@ struct Registration {
   double overlap = 0.0;      ///< share of the upright structure that meets the other's, after the fine step
   double matched = 0.0;      ///< share of the points that meet a plane
   double rmse_m = 0.0;       ///< of those, across their planes
+  double own_rmse_m = 0.0;   ///< of a's own points across the same planes: pipes and shelves are not flat
   double information = 0.0;  ///< of the weakest direction, as a share of what it would be were every plane to face it
   Matrix6 covariance = Matrix6::Identity();  ///< (theta, p) on the right of T_a_b
 };
@@ -38,6 +41,9 @@ class PlaneGrid {
 /// points to planes in two grids (iterated least squares with a Cauchy loss).
 Registration register_submaps(const Submap& a, const Submap& b, const SearchWindow& window,
                               const RegistrationConfig& config);
+
+/// What speaks against two places being the same; empty: nothing.
+std::string refusal(const Registration& registration, const RegistrationConfig& config);
 
 /// The same from a guess in space, without the coarse step.
 Registration refine(const Submap& a, const Submap& b, const SE3& T_a_b, const RegistrationConfig& config);

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numbers>
+#include <string>
 
 namespace pllit {
 namespace {
@@ -51,6 +54,38 @@ PointSight look(const Sight& sight, const Vector3d& p_W, int reach, const SightC
                                           : PointSight::surface;
 }
 
+/// What a sight says about a point, surface or free, and from how far away.
+struct Look {
+  bool surface;
+  double range_m;
+};
+
+/// Whether looks tell of something that came: split in time where they contradict that least, the point was free
+/// before and a surface after. What is thin is seen through from afar although it was always there: only what looked
+/// from no farther than where the surface was seen from speaks of that.
+bool tell_of_a_coming(const std::vector<Look>& looks) {
+  constexpr int kFewest = 6, kMajority = 4;
+  int contradicting = 0;  // surfaces before the split and free looks after it
+  for (const Look& look : looks) contradicting += look.surface ? 0 : 1;
+  int fewest = contradicting;
+  std::size_t split = 0;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    contradicting += looks[i].surface ? 1 : -1;
+    if (contradicting >= fewest) continue;
+    fewest = contradicting;
+    split = i + 1;
+  }
+  double farthest_m = 0.0;
+  int free_before = 0, surface_before = 0, free_after = 0, surface_after = 0;
+  for (std::size_t i = split; i < looks.size(); ++i) {
+    ++(looks[i].surface ? surface_after : free_after);
+    if (looks[i].surface) farthest_m = std::max(farthest_m, looks[i].range_m);
+  }
+  for (std::size_t i = 0; i < split; ++i)
+    if (looks[i].surface || looks[i].range_m <= farthest_m) ++(looks[i].surface ? surface_before : free_before);
+  return free_before >= kFewest && free_before >= kMajority * surface_before && surface_after >= kMajority * free_after;
+}
+
 }  // namespace
 
 Sight sight_of(Time time, const Vector3d& p_W, std::span<const Vector3f> points_W, const SightConfig& config) {
@@ -86,12 +121,16 @@ void SightLog::add(Sight sight) {
 
 SightEvidence SightLog::evidence(const Vector3d& p_W, Time before) const {
   SightEvidence evidence;
+  std::vector<Look> looks;
   for (const Sight& sight : sights_) {
     if (sight.time >= before) break;
-    const PointSight seen = look_at(sight, p_W, config_);
-    evidence.surface += seen == PointSight::surface ? 1 : 0;
-    evidence.free += seen == PointSight::free ? 1 : 0;
+    const bool surface = look_at(sight, p_W, config_) == PointSight::surface;
+    // A sight's rays come from where the rig was during a few scans: what they pass at a rim is more than a cell.
+    if (!surface && look_around(sight, p_W, config_) != PointSight::free) continue;
+    looks.push_back({surface, (p_W - sight.p_W).norm()});
+    ++(surface ? evidence.surface : evidence.free);
   }
+  evidence.came = tell_of_a_coming(looks);
   return evidence;
 }
 

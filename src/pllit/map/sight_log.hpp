@@ -46,7 +46,8 @@ PointSight look_around(const Sight& sight, const Vector3d& p_W, const SightConfi
 /// How often earlier sights saw a surface at a point, and how often through it.
 struct SightEvidence {
   int surface = 0, free = 0;
-  bool was_free() const { return free >= 3 && free > 2 * surface; }
+  bool came = false;  ///< first they saw through it and later a surface, and not only as they came nearer
+  bool was_free() const { return came || (free >= 3 && free > 2 * surface); }
 };
 
 class SightLog {

@@ -29,7 +29,9 @@ void list(Section section, RegistrationConfig& config) {
   section.add(PLLIT_KEY(iterations), "Most iterations of each.", "", {1.0, 100.0});
   section.add(PLLIT_KEY(min_overlap), "Smaller share of upright structure that meets the other submap's: no loop.", "",
               {0.0, 1.0});
-  section.add(PLLIT_KEY(max_rmse_m), "Larger distance of points from their planes: no loop.", "m", {0.001, 1.0});
+  section.add(PLLIT_KEY(max_rmse_m), "Larger distance of points from their planes: no loop,", "m", {0.001, 1.0});
+  section.add(PLLIT_KEY(max_rmse_of_own), "if also larger than so many times that of the earlier place's own points.",
+              "", {0.0, 10.0});
   section.add(PLLIT_KEY(min_information), "Less information in some direction, as a share of the most: no loop.", "",
               {0.0, 1.0});
   section.add(PLLIT_KEY(sigma_m), "Least uncertainty of a loop, one sigma.", "m", {0.001, 10.0});

@@ -74,8 +74,8 @@ std::vector<FrameCell> health_row(const FrameEstimate& frame) {
 }
 
 std::vector<std::string> loop_columns() {
-  return {"later_s", "earlier_s",   "found_by",         "distance_m", "score",    "columns",  "overlap", "matched",
-          "rmse_m",  "information", "odometry_squared", "odometry_m", "agreeing", "accepted", "reason"};
+  return {"later_s", "earlier_s",  "found_by",    "distance_m",       "score",      "columns",  "overlap",  "matched",
+          "rmse_m",  "own_rmse_m", "information", "odometry_squared", "odometry_m", "agreeing", "accepted", "reason"};
 }
 
 std::vector<FrameCell> loop_row(const LoopRecord& record) {
@@ -89,6 +89,7 @@ std::vector<FrameCell> loop_row(const LoopRecord& record) {
           registration.overlap,
           registration.matched,
           registration.rmse_m,
+          registration.own_rmse_m,
           registration.information,
           record.squared_against_odometry,
           record.against_odometry_m,

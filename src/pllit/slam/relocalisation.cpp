@@ -66,9 +66,7 @@ void add_guesses(const Place& here, const std::vector<Place>& places, const Relo
     const SearchWindow window{
         .centre = {.t_m = Eigen::Vector2d::Zero(), .yaw_rad = match.yaw_rad}, .reach_m = 6.0, .reach_rad = 0.2};
     const Registration found = register_submaps(there->submap, here.submap, window, config.registration);
-    if (found.overlap < config.registration.min_overlap || found.rmse_m > config.registration.max_rmse_m ||
-        found.information < config.registration.min_information)
-      continue;
+    if (!refusal(found, config.registration).empty()) continue;
     const SE3 T_A_B = there->T_W_H() * found.T_a_b * here.T_W_H().inverse();
     guesses.push_back({&here, T_A_B, found.overlap});
   }
