@@ -24,6 +24,7 @@ ROWS = {  # address without the seed, preset, file of the motion, yaw drifts in 
     "street_07": ("sim:street?motion=kitti_07.tum&images=none", "ntu4dradlm", "kitti_07.tum", [0.0, 1.0]),
     "street_07_all_around": ("sim:street?motion=kitti_07.tum&rig=hilti2022&images=none", "hilti2022", "kitti_07.tum", [0.0, 1.0]),
     "street_00": ("sim:street?motion=kitti_00.tum&images=none", "ntu4dradlm", "kitti_00.tum", [0.0, 1.0]),
+    "street_7km": ("sim:street?motion=kitti_00.tum&length=7400&images=none", "ntu4dradlm", "kitti_00.tum", [0.0]),
     "corridor": ("sim:corridor?length=120&images=none", "hilti2022", None, [0.0]),
     "plant": ("sim:plant?images=none", "inspection", None, [0.0]),
 }

@@ -228,7 +228,7 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
   const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
   const bool stays = members.left <= config_.max_leaving * members.all;
   if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
-  if (members.change < map.model.min_change * members.hot) return;
+  if (members.change < map.model.min_change * members.hot || members.sigmas < config_.min_sigmas * members.hot) return;
   const int seeds = members.known + members.new_surfaces;
   if (seeds < std::max(kFewestSeeds, members.hot / kMostJoined)) return;
   if (sure_voxels(watch_, anomaly.id, config_.sure_share * map.model.min_change) < kFewestSeeds) return;

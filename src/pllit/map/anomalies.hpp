@@ -11,8 +11,9 @@ namespace pllit {
 
 struct AnomalyConfig {
   WatchConfig watch;
-  int min_voxels = 4;    ///< smaller clusters are noise
-  double dwell_s = 0.5;  ///< how long its voxels must have been hot before the alarm is raised
+  int min_voxels = 4;       ///< smaller clusters are noise
+  double min_sigmas = 5.0;  ///< mean change of its voxels: they err together, so that many say no more than one
+  double dwell_s = 0.5;     ///< how long its voxels must have been hot before the alarm is raised
   int min_views = 2;  ///< viewpoints that it must have been hot from, twice as many where it is one voxel thick: what
                       ///< is seen past an edge moves ...
   double still_dwell_s = 3.0;  ///< ... or how long, for a rig that stands

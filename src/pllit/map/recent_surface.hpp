@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,24 +24,27 @@ struct RecentSurfaceConfig {
   double memory_s = 20.0;  ///< nor for so long
 };
 
-/// Holds everything that an image may show, and somewhat more.
+/// Holds everything that an image may show as far as `reach_m`, and somewhat more.
 struct ViewCone {
   Vector3d apex_W, axis_W;
   double least_cos = 0.0;  ///< of the angle from the axis
+  double reach_m = std::numeric_limits<double>::infinity();
 
   bool contains(const Vector3d& p_W) const {
     const Vector3d ray_W = p_W - apex_W;
-    return ray_W.dot(axis_W) > least_cos * ray_W.norm();
+    const double range_m = ray_W.norm();
+    return range_m <= reach_m && ray_W.dot(axis_W) > least_cos * range_m;
   }
   /// Whether it holds any point of a ball; true as well for some balls next to it.
   bool may_show(const Vector3d& middle_W, double radius_m) const {
     const Vector3d ray_W = middle_W - apex_W;
     const double along_m = ray_W.dot(axis_W), across_m = (ray_W - along_m * axis_W).norm();
     const double sine = std::sqrt(1.0 - least_cos * least_cos);
-    return across_m * least_cos - along_m * sine < radius_m;  // distance from the cone's side
+    return ray_W.norm() < reach_m + radius_m &&
+           across_m * least_cos - along_m * sine < radius_m;  // distance from the cone's side
   }
 };
-ViewCone view_cone(const SE3& T_W_C, const Camera& camera);
+ViewCone view_cone(const SE3& T_W_C, const Camera& camera, double reach_m);
 
 /// Unit normal of the surface at a point in W; zero where unknown.
 using NormalAt = std::function<Vector3f(const Vector3d& p_W)>;
@@ -50,11 +54,13 @@ class RecentSurface {
   explicit RecentSurface(const RecentSurfaceConfig& config) : config_(config) {}
 
   /// Takes in a scan, in W; forgets what is old or far.
-  void add(std::span<const Vector3f> points_W, const Vector3d& centre_W, Time time, const NormalAt& normal_at);
-  /// Takes out what a sight of the last scans alone sees through, and returns where that was.
-  std::vector<Vector3d> carve(const Sight& sight, const SightConfig& config);
-  /// One point a voxel, the mean of those measured, in a view.
-  SurfacePoints points(const ViewCone& view) const;
+  void add(std::span<const Vector3f> points_W, const Vector3d& centre_W, Time time);
+  /// Takes out what a sight of the last scans alone sees through, and returns where that was. Each call looks at one
+  /// part of so many, in turn.
+  std::vector<Vector3d> carve(const Sight& sight, const SightConfig& config, std::size_t parts);
+  /// One point a voxel, the mean of those measured, in a view. A voxel's normal is looked up when it is first in view,
+  /// and until it is known again whenever twice as many points have come.
+  SurfacePoints points(const ViewCone& view, const NormalAt& normal_at);
   std::size_t size() const { return size_; }
   /// Of memory, but for the cells.
   std::size_t bytes() const { return block_of_.bytes() + blocks_.capacity() * sizeof(Block); }
@@ -66,6 +72,7 @@ class RecentSurface {
     Vector3f offset_sum_m = Vector3f::Zero();  ///< from the voxel's centre
     float points = 0.0F;                       ///< 0: seen through, waits to be swept out
     Vector3f normal_W = Vector3f::Zero();
+    float looked_up = 0.0F;   ///< the normal, when there were so many points
     std::uint16_t place = 0;  ///< in its block
     Time last{};
     double way_m = 0.0;  ///< of the rig, when last measured
@@ -90,7 +97,8 @@ class RecentSurface {
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> spare_;  ///< numbers of blocks that hold nothing any more
   std::size_t size_ = 0;
-  std::size_t swept_to_ = 0;  ///< slot of the table
+  std::size_t swept_to_ = 0;   ///< slot of the table
+  std::size_t carved_to_ = 0;  ///< block
   Vector3d centre_W_ = Vector3d::Zero();
   double way_m_ = 0.0;
   Time now_{};

@@ -10,49 +10,82 @@
 namespace pllit {
 namespace {
 
+/// atan2 within 1e-5 rad, a thousandth of a cell, in a fraction of its time (Abramowitz and Stegun, 4.4.47).
+inline float angle_of(float y, float x) {
+  constexpr float kPi = std::numbers::pi_v<float>, kTiny = 1e-30F;
+  const float across = std::abs(x), along = std::abs(y);
+  const float t = std::min(across, along) / (std::max(across, along) + kTiny), s = t * t;
+  float angle = t * (0.9998660F + s * (-0.3302995F + s * (0.1801410F + s * (-0.0851330F + s * 0.0208351F))));
+  angle = along > across ? 0.5F * kPi - angle : angle;
+  angle = x < 0.0F ? kPi - angle : angle;
+  return std::copysign(angle, y);
+}
+
 /// Rows from straight down to straight up, columns once around.
 struct Cells {
   int columns, rows;
-  double per_rad;
+  float per_rad;
 
   explicit Cells(const SightConfig& config)
       : columns(static_cast<int>(std::ceil(360.0 / config.cell_deg))),
         rows(static_cast<int>(std::ceil(180.0 / config.cell_deg))),
-        per_rad(180.0 / std::numbers::pi / config.cell_deg) {}
+        per_rad(static_cast<float>(180.0 / std::numbers::pi / config.cell_deg)) {}
 
   std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   std::size_t at(int column, int row) const {
     return static_cast<std::size_t>(row * columns + (column + columns) % columns);
   }
-  int column_of(const Vector3d& ray) const {
-    return std::min(columns - 1, static_cast<int>((std::atan2(ray.y(), ray.x()) + std::numbers::pi) * per_rad));
+  int column_of(const Vector3f& ray) const {
+    constexpr float kPi = std::numbers::pi_v<float>;
+    return std::clamp(static_cast<int>((angle_of(ray.y(), ray.x()) + kPi) * per_rad), 0, columns - 1);
   }
-  int row_of(const Vector3d& ray) const {
-    const double elevation = std::atan2(ray.z(), ray.head<2>().norm());
-    return std::clamp(static_cast<int>((elevation + 0.5 * std::numbers::pi) * per_rad), 0, rows - 1);
+  int row_of(const Vector3f& ray) const {
+    constexpr float kQuarter = 0.5F * std::numbers::pi_v<float>;
+    const float across = std::sqrt(ray.x() * ray.x() + ray.y() * ray.y());
+    return std::clamp(static_cast<int>((angle_of(ray.z(), across) + kQuarter) * per_rad), 0, rows - 1);
   }
 };
 
-/// By the nearest surface within `reach` cells, of which a third must have been measured.
-PointSight look(const Sight& sight, const Vector3d& p_W, int reach, const SightConfig& config) {
-  const Cells cells(config);
-  const Vector3d ray = p_W - sight.p_W;
-  const double range_m = ray.norm();
-  const int column = cells.column_of(ray), row = cells.row_of(ray);
-  int measured = 0, nearest_mm = 65535;
-  for (int r = std::max(0, row - reach); r <= std::min(cells.rows - 1, row + reach); ++r)
-    for (int c = column - reach; c <= column + reach; ++c) {
-      const int range_mm = sight.range_mm[cells.at(c, r)];
-      if (range_mm == 0) continue;
-      ++measured;
-      nearest_mm = std::min(nearest_mm, range_mm);
-    }
-  if (3 * measured < (2 * reach + 1) * (2 * reach + 1)) return PointSight::unknown;
-  const double margin_m = config.margin_m + config.margin_share * range_m, nearest_m = 1e-3 * nearest_mm;
-  return nearest_m > range_m + margin_m   ? PointSight::free
-         : nearest_m < range_m - margin_m ? PointSight::hidden
-                                          : PointSight::surface;
-}
+/// A point as a sight sees it: by the nearest surface in the cells around.
+class Aim {
+ public:
+  Aim(const Sight& sight, const Vector3d& p_W, const SightConfig& config) : sight_(sight), cells_(config) {
+    const Vector3f ray = (p_W - sight.p_W).cast<float>();
+    column_ = cells_.column_of(ray);
+    row_ = cells_.row_of(ray);
+    const double range_m = static_cast<double>(ray.norm()), margin_m = config.margin_m + config.margin_share * range_m;
+    near_mm_ = 1000.0 * (range_m - margin_m);
+    far_mm_ = 1000.0 * (range_m + margin_m);
+  }
+
+  PointSight own() const {
+    const int range_mm = sight_.range_mm[cells_.at(column_, row_)];
+    return range_mm == 0 ? PointSight::unknown : seen(range_mm);
+  }
+  /// By the cells around too, of which a third must have been measured.
+  PointSight around() const {
+    constexpr int kReach = 1;
+    int measured = 0, nearest_mm = 65535;
+    for (int r = std::max(0, row_ - kReach); r <= std::min(cells_.rows - 1, row_ + kReach); ++r)
+      for (int c = column_ - kReach; c <= column_ + kReach; ++c) {
+        const int range_mm = sight_.range_mm[cells_.at(c, r)];
+        if (range_mm == 0) continue;
+        ++measured;
+        nearest_mm = std::min(nearest_mm, range_mm);
+      }
+    return 3 * measured < (2 * kReach + 1) * (2 * kReach + 1) ? PointSight::unknown : seen(nearest_mm);
+  }
+
+ private:
+  PointSight seen(int range_mm) const {
+    return range_mm > far_mm_ ? PointSight::free : range_mm < near_mm_ ? PointSight::hidden : PointSight::surface;
+  }
+
+  const Sight& sight_;
+  Cells cells_;
+  int column_, row_;
+  double near_mm_, far_mm_;
+};
 
 /// What a sight says about a point, surface or free, and from how far away.
 struct Look {
@@ -91,24 +124,31 @@ bool tell_of_a_coming(const std::vector<Look>& looks) {
 Sight sight_of(Time time, const Vector3d& p_W, std::span<const Vector3f> points_W, const SightConfig& config) {
   const Cells cells(config);
   Sight sight{.time = time, .p_W = p_W, .range_mm = std::vector<std::uint16_t>(cells.count(), 0)};
-  const double max_range_m = std::min(config.max_range_m, 65.0);
+  const auto max_range_m = static_cast<float>(std::min(config.max_range_m, 65.0));
+  const Vector3f from_W = p_W.cast<float>();
   for (const Vector3f& point_W : points_W) {
-    const Vector3d ray = point_W.cast<double>() - p_W;
-    const double range_m = ray.norm();
-    if (range_m > max_range_m || range_m < 0.01) continue;
+    const Vector3f ray = point_W - from_W;
+    const float range_m = ray.norm();
+    if (range_m > max_range_m || range_m < 0.01F) continue;
     std::uint16_t& nearest_mm = sight.range_mm[cells.at(cells.column_of(ray), cells.row_of(ray))];
-    const auto range_mm = static_cast<std::uint16_t>(range_m * 1000.0);
+    const auto range_mm = static_cast<std::uint16_t>(range_m * 1000.0F);
     if (nearest_mm == 0 || range_mm < nearest_mm) nearest_mm = range_mm;
   }
   return sight;
 }
 
 PointSight look_at(const Sight& sight, const Vector3d& p_W, const SightConfig& config) {
-  return look(sight, p_W, 0, config);
+  return Aim(sight, p_W, config).own();
 }
 
 PointSight look_around(const Sight& sight, const Vector3d& p_W, const SightConfig& config) {
-  return look(sight, p_W, 1, config);
+  return Aim(sight, p_W, config).around();
+}
+
+bool is_seen_through(const Sight& sight, const Vector3d& p_W, const SightConfig& config) {
+  const Aim aim(sight, p_W, config);
+  const PointSight own = aim.own();  // mostly that says no already
+  return own != PointSight::surface && own != PointSight::hidden && aim.around() == PointSight::free;
 }
 
 void SightLog::add(Sight sight) {
@@ -124,9 +164,10 @@ SightEvidence SightLog::evidence(const Vector3d& p_W, Time before) const {
   std::vector<Look> looks;
   for (const Sight& sight : sights_) {
     if (sight.time >= before) break;
-    const bool surface = look_at(sight, p_W, config_) == PointSight::surface;
+    const Aim aim(sight, p_W, config_);
+    const bool surface = aim.own() == PointSight::surface;
     // A sight's rays come from where the rig was during a few scans: what they pass at a rim is more than a cell.
-    if (!surface && look_around(sight, p_W, config_) != PointSight::free) continue;
+    if (!surface && aim.around() != PointSight::free) continue;
     looks.push_back({surface, (p_W - sight.p_W).norm()});
     ++(surface ? evidence.surface : evidence.free);
   }

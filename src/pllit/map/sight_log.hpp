@@ -42,6 +42,8 @@ PointSight look_at(const Sight& sight, const Vector3d& p_W, const SightConfig& c
 /// By the cells around it too: free only where nothing near the direction is nearer. At edges one cell alone says too
 /// much.
 PointSight look_around(const Sight& sight, const Vector3d& p_W, const SightConfig& config);
+/// Whether look_around says free, in less time.
+bool is_seen_through(const Sight& sight, const Vector3d& p_W, const SightConfig& config);
 
 /// How often earlier sights saw a surface at a point, and how often through it.
 struct SightEvidence {

@@ -81,7 +81,7 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
     if (config_.unit == IntensityUnit::kelvin) return config_.kelvin_at_zero + config_.kelvin_per_count * raw;
     return raw;
   };
-  const SurfacePoints points = surface_.points(view_cone(input.T_W_C, camera_));
+  const SurfacePoints points = surface_in_view(input);
   ThermalView view{.time = input.time, .viewpoint_W = input.T_W_C.translation()};
   view.observations =
       sample_image(points, input.T_W_C, camera_, {image_through(input.raw, unit), input.raw}, config_.sampling);
@@ -124,23 +124,26 @@ bool Thermography::shutter_closed(const ThermographyInput& input) {
 /// Surfaces stay in memory for a while, but not where the last scans see through them.
 void Thermography::remember_scan(const ThermographyInput& input) {
   if (input.points_W.empty()) return;
-  const double reach_m = config_.sampling.max_range_m;
+  scans_.push_back(evenly(input.points_W, static_cast<std::size_t>(config_.scan_points)));
+  surface_.add(scans_.back(), input.T_W_C.translation(), input.time);
+  while (static_cast<int>(scans_.size()) > config_.scans) scans_.pop_front();
+  std::vector<Vector3f> fresh_W;
+  for (const auto& scan_W : scans_) fresh_W.insert(fresh_W.end(), scan_W.begin(), scan_W.end());
+  sight_ = sight_of(input.time, input.T_W_C.translation(), fresh_W, config_.sights);
+  constexpr std::size_t kParts = 3;  // what has left is gone within so many scans
+  for (const Vector3d& p_W : surface_.carve(sight_, config_.sights, kParts)) map_.forget(p_W);
+}
+
+SurfacePoints Thermography::surface_in_view(const ThermographyInput& input) {
   std::map<std::array<VoxelKey, 2>, Vector3f> normals_W;  // neighbouring points share their plane
   const auto normal_at = [&](const Vector3d& p_W) -> Vector3f {
-    if (!input.planes || (p_W - input.T_W_C.translation()).norm() > 1.5 * reach_m) return Vector3f::Zero();
+    if (!input.planes) return Vector3f::Zero();
     const auto [at, is_new] = normals_W.try_emplace(input.planes->window_at(p_W).corners, Vector3f::Zero());
     if (is_new)
       if (const auto plane = input.planes->plane_at(p_W)) at->second = plane->normal_W().cast<float>();
     return at->second;
   };
-  scans_.push_back(evenly(input.points_W, static_cast<std::size_t>(config_.scan_points)));
-  surface_.add(scans_.back(), input.T_W_C.translation(), input.time, normal_at);
-  while (static_cast<int>(scans_.size()) > config_.scans) scans_.pop_front();
-  std::vector<Vector3f> fresh_W;
-  for (const auto& scan_W : scans_) fresh_W.insert(fresh_W.end(), scan_W.begin(), scan_W.end());
-  sight_ = sight_of(input.time, input.T_W_C.translation(), fresh_W, config_.sights);
-  if (++scan_count_ % config_.scans != 0) return;
-  for (const Vector3d& p_W : surface_.carve(sight_, config_.sights)) map_.forget(p_W);
+  return surface_.points(view_cone(input.T_W_C, camera_, config_.sampling.max_range_m), normal_at);
 }
 
 void Thermography::keep_crops(const ThermographyInput& input) {
@@ -155,7 +158,8 @@ void Thermography::keep_crops(const ThermographyInput& input) {
 /// Finds the curve from this image's intensities to the map's; false where the image must not be used.
 bool Thermography::tie_to_map(const std::vector<SurfaceObservation>& observations, ThermographyFrame& frame) {
   using Use = ThermographyFrame::Use;
-  const std::vector<AnchorPair> pairs = anchor_pairs(map_, observations, camera_);
+  constexpr std::size_t kPairs = 4000;  // more add nothing but time: neighbours say the same
+  const std::vector<AnchorPair> pairs = evenly(anchor_pairs(map_, observations, camera_), kPairs);
   frame.anchor = anchor_curve(pairs, anchor_, config_.anchor);
   if (frame.anchor.holds) {
     anchor_ = frame.anchor.curve;

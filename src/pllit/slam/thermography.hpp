@@ -61,6 +61,7 @@ class Thermography {
  private:
   bool shutter_closed(const ThermographyInput& input);
   void remember_scan(const ThermographyInput& input);
+  SurfacePoints surface_in_view(const ThermographyInput& input);
   void keep_crops(const ThermographyInput& input);
   bool tie_to_map(const std::vector<SurfaceObservation>& observations, ThermographyFrame& frame);
 
@@ -74,7 +75,6 @@ class Thermography {
   RecentSurface surface_;
   std::deque<std::vector<Vector3f>> scans_;
   Sight sight_;  ///< of these
-  int scan_count_ = 0;
   cv::Mat last_raw_;
   std::map<std::uint32_t, cv::Mat> crops_;
   std::optional<Time> shutter_;  ///< last image that was frozen
