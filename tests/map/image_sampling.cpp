@@ -229,5 +229,38 @@ TEST(SampleImage, ReadsSixteenBits) {
   EXPECT_EQ(sample_image(points, SE3::Identity(), camera(), images, {}).at(0).raw, 54321.0F);
 }
 
+TEST(SampleImage, LeavesOutWhatAHotThingWasSmearedOver) {
+  // A wall, hot where x > 0; the camera turns so that the scene moves by 6 px to the right in a time constant, and the
+  // image is what a bolometer makes of that.
+  constexpr double kWay_px = 6.0, kCold = 100.0, kHot = 200.0;
+  const Camera pinhole{.width = 320, .height = 256, .fx = 300.0, .fy = 300.0, .cx = 160.0, .cy = 128.0};
+  const SE3 before = pose_from(exp_so3({0.0, kWay_px / pinhole.fx, 0.0}), Vector3d::Zero());
+  ImagePair images{cv::Mat(pinhole.height, pinhole.width, CV_32FC1), cv::Mat(pinhole.height, pinhole.width, CV_8UC1)};
+  images.raw.setTo(100);
+  for (int row = 0; row < pinhole.height; ++row)
+    for (int column = 0; column < pinhole.width; ++column) {
+      const double x_px = column - pinhole.cx;  // where negative, it was hot until so many pixels of way ago
+      images.calibrated.at<float>(row, column) =
+          static_cast<float>(x_px < 0.0 ? kCold + (kHot - kCold) * std::exp(x_px / kWay_px) : kHot);
+    }
+  SurfacePoints wall;
+  for (float y = -1.0F; y <= 1.0F; y += 0.02F)
+    for (float x = -1.5F; x <= 1.5F; x += 0.02F) {
+      wall.points_W.emplace_back(x, y, 4.0F);
+      wall.normals_W.emplace_back(0.0F, 0.0F, -1.0F);
+    }
+  const auto all = sample_image(wall, SE3::Identity(), pinhole, images, {});
+  const auto sharp = sample_image(wall, SE3::Identity(), pinhole, images, {}, Smear{before, 10.0F});
+  EXPECT_GT(sharp.size(), all.size() * 3 / 4);
+  double worst_of_all = 0.0, worst = 0.0;
+  const auto error = [&](const SurfaceObservation& o) {
+    return std::abs(o.intensity - (o.pixel_px.x() < pinhole.cx ? kCold : kHot));
+  };
+  for (const SurfaceObservation& o : all) worst_of_all = std::max(worst_of_all, error(o));
+  for (const SurfaceObservation& o : sharp) worst = std::max(worst, error(o));
+  EXPECT_GT(worst_of_all, 60.0);
+  EXPECT_LT(worst, 15.0);
+}
+
 }  // namespace
 }  // namespace pllit

@@ -201,6 +201,26 @@ std::pair<float, float> range_around(const cv::Mat& smooth, const Eigen::Vector2
   return {least, most};
 }
 
+/// How much an image shows of what was at a point's pixel before: a pixel follows the scene at the rate of their
+/// difference over the time constant, and the scene passes it along the point's way, so that the difference is the
+/// image's slope along what of that way a time constant takes.
+float smeared(const cv::Mat& smooth, const Vector3f& p_W, const Eigen::Vector2d& pixel_px, const Camera& camera,
+              const SE3& T_W_C_before) {
+  constexpr double kStep_px = 2.0, kStill_px = 0.5;
+  const Vector3d p_C = T_W_C_before.inverse().act(p_W.cast<double>());
+  const auto before_px = p_C.z() > 0.0 ? camera.project(p_C) : std::nullopt;
+  if (!before_px) return 0.0F;
+  const Eigen::Vector2d way_px = pixel_px - *before_px;
+  const double length_px = way_px.norm();
+  if (length_px < kStill_px) return 0.0F;
+  const Eigen::Vector2d step_px = kStep_px / length_px * way_px;
+  const auto read = [&](const Eigen::Vector2d& at_px) {
+    return read_bilinear(smooth, at_px.cwiseMax(0.0).cwiseMin(Eigen::Vector2d(smooth.cols - 1, smooth.rows - 1)));
+  };
+  const float rise = read(pixel_px + step_px) - read(pixel_px - step_px);
+  return std::abs(rise) * static_cast<float>(0.5 * length_px / kStep_px);
+}
+
 float read_raw(const cv::Mat& image, const Eigen::Vector2d& pixel_px) {
   const int column = static_cast<int>(pixel_px.x() + 0.5), row = static_cast<int>(pixel_px.y() + 0.5);
   return image.depth() == CV_8U ? static_cast<float>(image.at<std::uint8_t>(row, column))
@@ -210,7 +230,8 @@ float read_raw(const cv::Mat& image, const Eigen::Vector2d& pixel_px) {
 }  // namespace
 
 std::vector<SurfaceObservation> sample_image(const SurfacePoints& points, const SE3& T_W_C, const Camera& camera,
-                                             const ImagePair& images, const SamplingConfig& config) {
+                                             const ImagePair& images, const SamplingConfig& config,
+                                             const std::optional<Smear>& smear) {
   assert(points.normals_W.empty() || points.normals_W.size() == points.points_W.size());
   assert(images.calibrated.type() == CV_32FC1 && images.calibrated.size() == images.raw.size());
   assert(images.raw.cols == camera.width && images.raw.rows == camera.height);
@@ -229,6 +250,9 @@ std::vector<SurfaceObservation> sample_image(const SurfacePoints& points, const 
                                    .pixel_px = point.pixel_px.cast<float>()};
     if (!point.normal_W.isZero()) observation.cos_incidence = point.cos_incidence();
     if (observation.cos_incidence < static_cast<float>(config.min_cos_incidence)) continue;
+    if (smear &&
+        smeared(smooth, points.points_W[point.index], point.pixel_px, camera, smear->T_W_C_before) > smear->most)
+      continue;
     observation.intensity = read_bilinear(images.calibrated, point.pixel_px);
     const auto [least, most] = range_around(smooth, point.pixel_px, config.aim_px);
     observation.dip = std::max(0.0F, observation.intensity - least);

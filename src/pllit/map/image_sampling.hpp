@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -50,10 +51,17 @@ struct ImagePair {
   cv::Mat calibrated, raw;
 };
 
+/// A bolometer's pixels forget what they saw within a few time constants: what passed over them shows still.
+struct Smear {
+  SE3 T_W_C_before;   ///< the camera's pose one time constant before the image
+  float most = 0.0F;  ///< a point over which more than that is smeared is not used, in the unit of the images
+};
+
 /// The points that the image shows: in range, inside the image, not hidden, away from depth edges, not at a grazing
-/// angle. In the order of `points`. Intensities are read bilinearly, dips and rises in the image smoothed over 3 x 3
-/// pixels, for noise is neither.
+/// angle, nor smeared. In the order of `points`. Intensities are read bilinearly, dips and rises in the image smoothed
+/// over 3 x 3 pixels, for noise is neither.
 std::vector<SurfaceObservation> sample_image(const SurfacePoints& points, const SE3& T_W_C, const Camera& camera,
-                                             const ImagePair& images, const SamplingConfig& config);
+                                             const ImagePair& images, const SamplingConfig& config,
+                                             const std::optional<Smear>& smear = std::nullopt);
 
 }  // namespace pllit

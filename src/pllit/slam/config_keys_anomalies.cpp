@@ -49,6 +49,7 @@ void list_anomalies(Section section, ThermographyConfig& config) {
               {1.0, 10000.0});
   section.add("dwell_s", config.anomalies.dwell_s, "How long they must have been hot before the alarm.", "s",
               {0.0, 60.0});
+  section.add(PLLIT_KEY(time_constant_s), "Of a bolometer's pixels; 0 for other sensors.", "s", {0.0, 0.1});
   section.add(PLLIT_KEY(shutter_pause_s), "Images so soon after the shutter opened do not count.", "s", {0.0, 60.0});
 }
 

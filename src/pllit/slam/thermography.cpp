@@ -82,9 +82,10 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
     return raw;
   };
   const SurfacePoints points = surface_in_view(input);
+  const std::optional<Smear> smear = smear_of(input);
   ThermalView view{.time = input.time, .viewpoint_W = input.T_W_C.translation()};
   view.observations =
-      sample_image(points, input.T_W_C, camera_, {image_through(input.raw, unit), input.raw}, config_.sampling);
+      sample_image(points, input.T_W_C, camera_, {image_through(input.raw, unit), input.raw}, config_.sampling, smear);
   if (radiometric_)
     for (SurfaceObservation& seen : view.observations)
       seen.intensity = static_cast<float>(radiometric_->object_K(seen.intensity, seen.range_m));
@@ -132,6 +133,18 @@ void Thermography::remember_scan(const ThermographyInput& input) {
   sight_ = sight_of(input.time, input.T_W_C.translation(), fresh_W, config_.sights);
   constexpr std::size_t kParts = 3;  // what has left is gone within so many scans
   for (const Vector3d& p_W : surface_.carve(sight_, config_.sights, kParts)) map_.forget(p_W);
+}
+
+/// By the motion since the image before.
+std::optional<Smear> Thermography::smear_of(const ThermographyInput& input) {
+  constexpr double kOneMotion_s = 0.5;
+  const auto before = std::exchange(last_pose_, std::pair{input.time, input.T_W_C});
+  const double since_s = before ? to_seconds(input.time - before->first) : 0.0;
+  if (since_s <= 0.0 || since_s > kOneMotion_s || config_.time_constant_s <= 0.0) return std::nullopt;
+  const double share = config_.time_constant_s / since_s;
+  const SE3 back = input.T_W_C.inverse() * before->second;
+  return Smear{input.T_W_C * pose_from(exp_so3(share * log_so3(back.asSO3())), share * back.translation()),
+               static_cast<float>(config_.map.model.min_change / 3.0)};
 }
 
 SurfacePoints Thermography::surface_in_view(const ThermographyInput& input) {

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pllit/slam/odometry.hpp"
@@ -62,6 +63,7 @@ class Thermography {
   bool shutter_closed(const ThermographyInput& input);
   void remember_scan(const ThermographyInput& input);
   SurfacePoints surface_in_view(const ThermographyInput& input);
+  std::optional<Smear> smear_of(const ThermographyInput& input);
   void keep_crops(const ThermographyInput& input);
   bool tie_to_map(const std::vector<SurfaceObservation>& observations, ThermographyFrame& frame);
 
@@ -76,6 +78,7 @@ class Thermography {
   std::deque<std::vector<Vector3f>> scans_;
   Sight sight_;  ///< of these
   cv::Mat last_raw_;
+  std::optional<std::pair<Time, SE3>> last_pose_;  // T_W_C
   std::map<std::uint32_t, cv::Mat> crops_;
   std::optional<Time> shutter_;  ///< last image that was frozen
 };

@@ -20,9 +20,10 @@ struct ThermographyConfig {
   SightConfig sights;
   AnomalyConfig anomalies;
   RecentSurfaceConfig surface;
-  int scan_points = 24000;       ///< of each scan, evenly, at most: the voxels of the surface hold one each
-  int scans = 3;                 ///< so many scans together tell what is no longer there
-  double shutter_pause_s = 0.5;  ///< images this soon after the shutter opened do not count
+  int scan_points = 24000;        ///< of each scan, evenly, at most: the voxels of the surface hold one each
+  int scans = 3;                  ///< so many scans together tell what is no longer there
+  double time_constant_s = 0.01;  ///< of a bolometer's pixels; 0 for other sensors
+  double shutter_pause_s = 0.5;   ///< images this soon after the shutter opened do not count
 };
 
 }  // namespace pllit
