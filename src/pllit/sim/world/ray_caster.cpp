@@ -18,6 +18,8 @@ constexpr double kTextureWrap_m = 1024.0;
 const Vector3d kNowhere = Vector3d::Constant(std::numeric_limits<double>::infinity());
 /// What blocked() leaves out at either end.
 constexpr float kBlockedMargin_m = 1e-3F;
+/// No wider ones, where a processor has them: the same seed gives the same bytes on all machines.
+constexpr const char* kInstructions = "max_isa=avx2";
 
 /// A mesh placed in the world: a tile or an actor.
 struct Part {
@@ -119,7 +121,7 @@ struct RayCaster::Scene {
 };
 
 RayCaster::Scene::Scene(const Place& place_to_cast_in, double reach)
-    : world(place_to_cast_in), reach_m(reach), device(rtcNewDevice(nullptr)), centre_W(kNowhere) {
+    : world(place_to_cast_in), reach_m(reach), device(rtcNewDevice(kInstructions)), centre_W(kNowhere) {
   check(device.get());
   top = new_scene(device.get());
   for (const Actor& actor : world.actors()) {
