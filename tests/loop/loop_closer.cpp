@@ -76,6 +76,24 @@ TEST(LoopCloser, LeavesAnExactDriveAsItIs) {
   EXPECT_LT(error_m(drive(), closer.poses_M()), 0.05);
 }
 
+TEST(LoopCloser, DoesNotBendTheStartWhereTheVerticalWasNotYetKnown) {
+  // The odometry's frame is tilted, which it learns on the first metres: its verticals say so from there on.
+  constexpr double kTilt_rad = 0.045, kDegree = M_PI / 180.0;
+  auto tilted = drive();
+  for (std::size_t k = 0; k < tilted.size(); ++k) {
+    tilted[k].T_O_I = pose_from(exp_so3({0.0, kTilt_rad, 0.0}), Vector3d::Zero()) * tilted[k].T_O_I;
+    if (k < 8) tilted[k].up_I = tilted[k].T_O_I.rotation().transpose() * Vector3d::UnitZ();
+  }
+  const LoopCloser closer = closed(tilted);
+  EXPECT_GT(closer.accepted(), 5);
+  const std::size_t later = 40;
+  const SE3 expected = tilted[0].T_O_I.inverse() * tilted[later].T_O_I,
+            found = closer.poses_M()[0].inverse() * closer.poses_M()[later];
+  EXPECT_LT(difference(expected, found).head<3>().norm(), 0.3 * kDegree);
+  const Vector3d up_M = closer.poses_M()[later].rotation() * tilted[later].up_I;
+  EXPECT_LT(std::acos(up_M.z()), 0.3 * kDegree);
+}
+
 TEST(LoopCloser, GivesTheSameBytesForTheSameKeyframes) {
   const auto drifting = turned_away(drive(), 0.01);
   const LoopCloser a = closed(drifting), b = closed(drifting);

@@ -122,9 +122,11 @@ void LoopCloser::count_agreement() {
         keyframes_[static_cast<std::size_t>(records_[k].later)].way_m >= from_m)
       window.push_back(k);
   bool changed = false;
+  const bool first = accepted() == 0;
   for (const std::size_t seed : window)
     if (!records_[seed].accepted) changed |= accept(seed, window);
   if (!changed) return;
+  if (first) rebuild_graph();  // by now it is known what the first verticals were worth
   graph_->update(2);
   poses_M_ = graph_->poses_M();
 }
@@ -202,9 +204,20 @@ void LoopCloser::add_to_graph(std::size_t k) {
     UncertainMotion step = odometry_.between(pose - 1, pose);
     graph_->add_step({pose - 1, pose, step.T_a_b, odometry_factor_ * keyframe.step_covariance});
   }
-  graph_->add_vertical({pose, keyframe.up_I, std::hypot(keyframe.up_sigma_rad, config_.gravity_sigma_deg * kDegree)});
+  graph_->add_vertical({pose, keyframe.up_I, vertical_sigma_rad(k)});
   graph_->update();
   poses_M_.push_back(graph_->last_pose_M());
+}
+
+/// Soon after the start the odometry learns the accelerometer's bias, and with it where up is in its own frame: what
+/// was said before then was as far off as that has moved since.
+double LoopCloser::vertical_sigma_rad(std::size_t k) const {
+  constexpr double kLearned_m = 200.0;  // drift does not tilt the frame by much on so short a way
+  const auto up_O = [&](const LoopKeyframe& keyframe) { return Vector3d(keyframe.T_O_I.rotation() * keyframe.up_I); };
+  const auto after =
+      std::ranges::upper_bound(keyframes_, keyframes_[k].way_m + kLearned_m, {}, &LoopKeyframe::way_m) - 1;
+  const double moved_rad = std::acos(std::clamp(up_O(keyframes_[k]).dot(up_O(*after)), -1.0, 1.0));
+  return std::hypot(keyframes_[k].up_sigma_rad, config_.gravity_sigma_deg * kDegree, moved_rad);
 }
 
 void LoopCloser::rebuild_graph() {
@@ -223,8 +236,7 @@ PoseGraph LoopCloser::whole_graph() const {
     if (k > 0)
       graph.odometry.push_back(
           {k - 1, k, odometry_.between(k - 1, k).T_a_b, odometry_factor_ * keyframe.step_covariance});
-    graph.verticals.push_back(
-        {k, keyframe.up_I, std::hypot(keyframe.up_sigma_rad, config_.gravity_sigma_deg * kDegree)});
+    graph.verticals.push_back({k, keyframe.up_I, vertical_sigma_rad(static_cast<std::size_t>(k))});
   }
   for (const LoopRecord& record : records_)
     if (record.accepted)

@@ -53,6 +53,7 @@ class LoopCloser {
   void count_agreement();
   bool accept(std::size_t seed, std::span<const std::size_t> window);
   void follow_drift(const std::vector<std::size_t>& agreeing);
+  double vertical_sigma_rad(std::size_t k) const;
   void rebuild_graph();
   PoseGraph whole_graph() const;
   UncertainMotion expected(int earlier, int later) const;
