@@ -2,19 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
-#include "pllit/geometry/voxel_neighbours.hpp"
+#include "pllit/map/new_surfaces.hpp"
 #include "pllit/map/surroundings.hpp"
 
 namespace pllit {
 namespace {
-
-bool was_there(const ThermalVoxel& voxel, Time before) {
-  constexpr std::uint32_t kFewest = 3;  // images
-  return voxel.first_seen < before && voxel.images >= kFewest;
-}
 
 /// Calls visit(voxel) for the voxels around one that are older than a time and not watched themselves.
 template <class Visit>
@@ -39,51 +33,6 @@ bool explained_by_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey
   return explained;
 }
 
-/// What a new surface is compared with.
-struct Normal {
-  float value, sigma;
-};
-
-/// The normal intensities of older surfaces that the image shows around a point, whatever their distance.
-std::vector<double> around_in_view(const WatchInput& input, const Watch& watch, VoxelKey key, Time before,
-                                   const WatchConfig& config) {
-  const double least_cos = std::cos(config.surround_deg * std::numbers::pi / 180.0);
-  const auto ray_W = [&](VoxelKey of) -> Vector3d {
-    return (input.map.position_W(of, *input.map.find(of)) - input.sight.p_W).normalized();
-  };
-  const Vector3d towards_W = ray_W(key);
-  std::vector<double> values;
-  for (const VoxelKey seen : input.seen) {
-    const ThermalVoxel& voxel = *input.map.find(seen);
-    if (was_there(voxel, before) && !watch.contains(seen) && ray_W(seen).dot(towards_W) > least_cos)
-      values.push_back(static_cast<double>(voxel.mean));
-  }
-  return values;
-}
-
-/// By the older surfaces next to it, or where those are too few by those around it in the image: what stands behind it
-/// was to be seen in its place. Nothing where these are too few as well.
-std::optional<Normal> surroundings(const WatchInput& input, const Watch& watch, VoxelKey key, Time before,
-                                   const WatchConfig& config) {
-  const ThermalMap& map = input.map;
-  std::vector<double> values;
-  for_older_neighbours(map, watch, key, config.surround_voxels, before,
-                       [&](const ThermalVoxel& voxel) { values.push_back(static_cast<double>(voxel.mean)); });
-  auto around = surroundings_of(std::move(values));
-  if (!around) around = surroundings_of(around_in_view(input, watch, key, before, config));
-  if (!around) return std::nullopt;
-  return Normal{static_cast<float>(around->upper),
-                static_cast<float>(std::max(map.config().model.noise, around->spread))};
-}
-
-/// What a voxel that is no older than the heat in it should be, where that can be told.
-std::optional<Normal> normal_of_new(const WatchInput& input, const Watch& watch, VoxelKey key,
-                                    const ThermalVoxel& voxel, Time before, const WatchConfig& config) {
-  const SightEvidence evidence = input.past.evidence(input.map.position_W(key, voxel), before);
-  if (!evidence.was_free()) return std::nullopt;
-  return surroundings(input, watch, key, before, config);
-}
-
 /// A quick look before all that: is it hotter than most of the image?
 float level_of(const WatchInput& input) {
   std::vector<float> values;
@@ -101,12 +50,12 @@ bool hot_against(const ThermalVoxel& voxel, const Normal& normal, double spread,
 }
 
 /// What was normal where a new voxel now is, if it is hot against that.
-std::optional<Normal> cooler_before(const WatchInput& input, const Watch& watch, VoxelKey key,
+std::optional<Normal> cooler_before(const WatchInput& input, const Watch& watch, NewSurfaces& surfaces, VoxelKey key,
                                     const ThermalVoxel& voxel, const WatchConfig& config) {
   const VoxelModelConfig& model = input.map.config().model;
   if (voxel.images % static_cast<std::uint32_t>(model.hits) != 0) return std::nullopt;  // it takes time
   const Time before = voxel.first_seen - from_seconds(config.evidence_lead_s);
-  const auto normal = normal_of_new(input, watch, key, voxel, before, config);
+  const auto normal = surfaces.normal(key, voxel, before);
   if (!normal || !hot_against(voxel, *normal, input.spread, model)) return std::nullopt;
   if (voxel.sure_change_from(normal->value) < 0.0F) return std::nullopt;
   const float change = voxel.mean - normal->value;
@@ -192,7 +141,7 @@ const WatchedVoxel* hot_neighbour(const Watch& watch, VoxelKey key, float value,
 }
 
 /// A voxel that was not there before: hot by itself, or part of a thing that is.
-void take_in_new(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
+void take_in_new(Watch& watch, NewSurfaces& surfaces, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
                  const WatchConfig& config) {
   const VoxelModelConfig& model = input.map.config().model;
   WatchedVoxel watched{.new_surface = true,
@@ -200,7 +149,7 @@ void take_in_new(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const Wa
                        .hits = static_cast<int>(voxel.images) - 1,
                        .position_W = input.map.position_W(key, voxel)};
   const WatchedVoxel* part = nullptr;
-  if (const auto normal = cooler_before(input, watch, key, voxel, config)) {
+  if (const auto normal = cooler_before(input, watch, surfaces, key, voxel, config)) {
     watched.normal = normal->value;
     watched.sigma = normal->sigma;
   } else if ((part = hot_neighbour(watch, key, voxel.mean, model))) {
@@ -257,6 +206,7 @@ bool is_away(WatchedVoxel& watched, const WatchInput& input) {
 Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
   const VoxelModelConfig& model = input.map.config().model;
   const float level = level_of(input);
+  NewSurfaces surfaces(input, watch, config);
   for (const VoxelKey key : input.seen) {
     const ThermalVoxel& voxel = *input.map.find(key);
     if (const auto found = watch.find(key); found != watch.end()) {
@@ -265,7 +215,7 @@ Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
       take_in_known(watch, key, voxel, input, config);
     } else if (!voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits) &&
                voxel.mean - level > static_cast<float>(model.min_change)) {
-      take_in_new(watch, key, voxel, input, config);
+      take_in_new(watch, surfaces, key, voxel, input, config);
     }
   }
   notice_leaving(watch, input);
