@@ -219,7 +219,7 @@ void AnomalyDetector::measure(Track& track, const ThermalView& view) {
 
 void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map) const {
   constexpr int kStillFrames = 15;  // a rig that stands sees it in all of them, one that passes by in a few
-  constexpr int kFewestSeeds = 2, kMostJoined = 5;  // one voxel's mistake must not take in a whole cabinet
+  constexpr int kFewestSeeds = 2, kMostJoined = 5, kEnoughSeeds = 8;  // few voxels' mistake must not take in a cabinet
   Anomaly& anomaly = track.anomaly;
   if (anomaly.state != AnomalyState::fresh) {
     anomaly.state = state_of(watch_, anomaly.id);
@@ -230,7 +230,7 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
   if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
   if (members.change < map.model.min_change * members.hot || members.sigmas < config_.min_sigmas * members.hot) return;
   const int seeds = members.known + members.new_surfaces;
-  if (seeds < std::max(kFewestSeeds, members.hot / kMostJoined)) return;
+  if (seeds < std::clamp(members.hot / kMostJoined, kFewestSeeds, kEnoughSeeds)) return;
   if (sure_voxels(watch_, anomaly.id, config_.sure_share * map.model.min_change) < kFewestSeeds) return;
   const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
   const bool watched_long =

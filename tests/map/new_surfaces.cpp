@@ -1,0 +1,57 @@
+#include "pllit/map/new_surfaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/random_states.hpp"
+
+namespace pllit {
+namespace {
+
+using test::Random;
+
+Time at(double seconds) { return Time{} + from_seconds(seconds); }
+
+/// What a scanner at the origin meets: a wall at x = 4 m, and a box before it from 2 m on where `box` holds.
+std::vector<Vector3f> points(bool box) {
+  Random random(7);
+  std::vector<Vector3f> points_W;
+  for (int i = 0; i < 12000; ++i) {
+    const Vector3d ray(1.0, random.uniform(-0.55, 0.55), random.uniform(-0.45, 0.45));
+    const bool hits_box = box && std::abs(2.0 * ray.y()) < 0.4 && std::abs(2.0 * ray.z()) < 0.4;
+    points_W.push_back(((hits_box ? 2.0 : 4.0) * ray).cast<float>());
+  }
+  return points_W;
+}
+
+/// A box comes after 20 s; not before 60 s does the camera turn to it, its left half first, and to the wall.
+TEST(NewSurfaces, AreNotComparedWithWhatElseIsNew) {
+  SightLog past({.spacing_m = 0.001});
+  for (int i = 0; i < 60; ++i) past.add(sight_of(at(i), {0.0, 0.002 * (i % 7), 0.0}, points(i >= 20), past.config()));
+  ThermalMap map({});
+  std::vector<VoxelKey> seen;
+  for (int image = 0; image < 20; ++image) {
+    ThermalView view{.time = at(60.0 + 0.1 * image), .viewpoint_W = Vector3d::Zero()};
+    const auto show = [&](double x, double y, double z, float grey) {
+      view.observations.push_back({.p_W = Vector3d(x, y, z), .pixel_px = {0.0F, 0.0F}, .intensity = grey, .raw = grey});
+    };
+    for (double z = -0.35; z <= 0.351; z += 0.05) {
+      for (double y = -0.35; y <= (image < 10 ? 0.001 : 0.351); y += 0.05) show(2.0, y, z, 200.0F);
+      for (double y = 1.0; y <= 1.501; y += 0.05) show(4.0, y, z, 80.0F);
+    }
+    seen = map.integrate(view);
+  }
+  const Sight sight = sight_of(at(62.0), Vector3d::Zero(), points(true), past.config());
+  const WatchInput input{.map = map, .seen = seen, .sight = sight, .past = past};
+  const Watch watch;
+  const WatchConfig config{.surround_deg = 25.0};
+  NewSurfaces surfaces(input, watch, config);
+  const VoxelKey late = map.key_at({2.0, 0.25, 0.0});
+  const ThermalVoxel* voxel = map.find(late);
+  ASSERT_TRUE(voxel && voxel->first_seen > at(60.9));
+  const auto normal = surfaces.normal(late, *voxel, voxel->first_seen - from_seconds(0.5));
+  ASSERT_TRUE(normal);
+  EXPECT_NEAR(normal->value, 80.0F, 1.0F);
+}
+
+}  // namespace
+}  // namespace pllit
