@@ -11,9 +11,9 @@ namespace pllit {
 std::optional<Normal> NewSurfaces::normal(VoxelKey key, const ThermalVoxel& voxel, Time before) {
   const SightEvidence evidence = input_.past.evidence(input_.map.position_W(key, voxel), before);
   if (!evidence.was_free()) return std::nullopt;
-  if (evidence.came)
-    return surroundings(key, [&](VoxelKey next, const ThermalVoxel& around) { return always_stood(next, around); });
-  return surroundings(key, [&](VoxelKey, const ThermalVoxel& around) { return was_there(around, before); });
+  const auto older = surroundings(key, [&](VoxelKey, const ThermalVoxel& around) { return was_there(around, before); });
+  if (older || !evidence.came) return older;
+  return surroundings(key, [&](VoxelKey next, const ThermalVoxel& around) { return always_stood(next, around); });
 }
 
 /// By those of the surfaces around that count.

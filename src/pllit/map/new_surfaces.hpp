@@ -28,8 +28,8 @@ class NewSurfaces {
 
   /// Where earlier sights, before a time, saw through the place where a voxel now is: by the surfaces next to it that
   /// are older, or where those are too few by those around it in the image, for what stands behind it was to be seen in
-  /// its place. Nothing where these are too few as well. Where what came is seen only later, the oldest surfaces around
-  /// may be its own: it is compared with those that sights have always met.
+  /// its place. Where what came is seen only later, the first of it finds none around that are older: it is compared
+  /// with those that sights have always met. Nothing where all these are too few.
   std::optional<Normal> normal(VoxelKey key, const ThermalVoxel& voxel, Time before);
 
  private:
