@@ -2,24 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "support/random_states.hpp"
+#include "support/box_before_wall.hpp"
 
 namespace pllit {
 namespace {
 
 using test::Random;
 
-/// A wall at x = 4 m, and a box before it from 2 m on where `box` holds.
-std::vector<Vector3f> points(bool box) {
-  Random random(7);
-  std::vector<Vector3f> points_W;
-  for (int i = 0; i < 12000; ++i) {
-    const Vector3d ray(1.0, random.uniform(-0.55, 0.55), random.uniform(-0.45, 0.45));
-    const bool hits_box = box && std::abs(2.0 * ray.y()) < 0.2 && std::abs(2.0 * ray.z()) < 0.2;
-    points_W.push_back(((hits_box ? 2.0 : 4.0) * ray).cast<float>());
-  }
-  return points_W;
-}
+std::vector<Vector3f> points(bool box) { return test::box_before_wall(box ? std::optional(0.2) : std::nullopt); }
 
 Sight sight_at(Time time, const Vector3d& p_W, bool box) { return sight_of(time, p_W, points(box), {}); }
 

@@ -76,6 +76,12 @@ class Aim {
     return 3 * measured < (2 * kReach + 1) * (2 * kReach + 1) ? PointSight::unknown : seen(nearest_mm);
   }
 
+  /// Whether around() says free. What is nearer in the own cell mostly says no already.
+  bool is_free() const {
+    const PointSight seen_there = own();
+    return seen_there != PointSight::surface && seen_there != PointSight::hidden && around() == PointSight::free;
+  }
+
  private:
   PointSight seen(int range_mm) const {
     return range_mm > far_mm_ ? PointSight::free : range_mm < near_mm_ ? PointSight::hidden : PointSight::surface;
@@ -146,9 +152,7 @@ PointSight look_around(const Sight& sight, const Vector3d& p_W, const SightConfi
 }
 
 bool is_seen_through(const Sight& sight, const Vector3d& p_W, const SightConfig& config) {
-  const Aim aim(sight, p_W, config);
-  const PointSight own = aim.own();  // mostly that says no already
-  return own != PointSight::surface && own != PointSight::hidden && aim.around() == PointSight::free;
+  return Aim(sight, p_W, config).is_free();
 }
 
 void SightLog::add(Sight sight) {
@@ -167,7 +171,7 @@ SightEvidence SightLog::evidence(const Vector3d& p_W, Time before) const {
     const Aim aim(sight, p_W, config_);
     const bool surface = aim.own() == PointSight::surface;
     // A sight's rays come from where the rig was during a few scans: what they pass at a rim is more than a cell.
-    if (!surface && aim.around() != PointSight::free) continue;
+    if (!surface && !aim.is_free()) continue;
     looks.push_back({surface, (p_W - sight.p_W).norm()});
     ++(surface ? evidence.surface : evidence.free);
   }

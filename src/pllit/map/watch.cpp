@@ -10,25 +10,17 @@
 namespace pllit {
 namespace {
 
-/// Calls visit(voxel) for the voxels around one that are older than a time and not watched themselves.
-template <class Visit>
-void for_older_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey key, int reach, Time before,
-                          const Visit& visit) {
-  for_neighbours(key, reach, [&](VoxelKey next) {
-    const ThermalVoxel* voxel = next == key ? nullptr : map.find(next);
-    if (voxel && was_there(*voxel, before) && !watch.contains(next)) visit(*voxel);
-  });
-}
-
 /// Whether something next to it has always been nearly as hot, or at times: calibration is good to a few pixels only,
 /// and what lies on a seam shows now the one side and now the other.
 bool explained_by_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey key, float hot, float change,
                              Time before, const WatchConfig& config) {
   bool explained = false;
-  for_older_neighbours(map, watch, key, config.seam_voxels, before, [&](const ThermalVoxel& voxel) {
+  for_neighbours(key, config.seam_voxels, [&](VoxelKey next) {
+    const ThermalVoxel* voxel = next == key ? nullptr : map.find(next);
+    if (!voxel || !was_there(*voxel, before) || watch.contains(next)) return;
     const bool at_times =
-        voxel.brightest_at != Time{} && voxel.brightest_at < before - from_seconds(config.seam_lead_s);
-    if (voxel.mean > hot - 0.5F * change || (at_times && voxel.brightest > hot - 0.25F * change)) explained = true;
+        voxel->brightest_at != Time{} && voxel->brightest_at < before - from_seconds(config.seam_lead_s);
+    if (voxel->mean > hot - 0.5F * change || (at_times && voxel->brightest > hot - 0.25F * change)) explained = true;
   });
   return explained;
 }
