@@ -58,8 +58,8 @@ TEST(Patches, HoldTheSamplesOfOnePixelOnOneSurface) {
   std::vector<Ray> rays;
   for (const double x : {-0.01, 0.01, -0.02, 0.02, 0.03, 0.04, 0.05, 0.06})
     rays.push_back({Vector3d::Zero(), Vector3d(x, 1.0, 0.0).normalized()});
-  std::vector<Hit> hits(rays.size());
-  caster.cast(rays, hits);
+  std::vector<Hit> hits;
+  for (const Ray& ray : rays) hits.push_back(caster.cast(ray));
   const Patches patches(rays, hits, 4);
   const std::vector<std::size_t> expected{0, 1, 0, 1, 4, 4, 4, 4};
   for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(patches.first(i), expected[i]);
@@ -72,8 +72,8 @@ TEST(Patches, TellSunFromShadowWhereAsked) {
   caster.move_to(Vector3d::Zero(), 0.0);
   const Vector3d at_left = Vector3d(-1.0, 4.0, 0.0).normalized(), at_right = Vector3d(1.0, 4.0, 0.0).normalized();
   const std::vector<Ray> rays{{Vector3d::Zero(), at_left}, {Vector3d::Zero(), at_right}, {Vector3d::Zero(), at_left}};
-  std::vector<Hit> hits(rays.size());
-  caster.cast(rays, hits);
+  std::vector<Hit> hits;
+  for (const Ray& ray : rays) hits.push_back(caster.cast(ray));
   Patches patches(rays, hits, 1);
   int asked = 0;
   patches.seek_sun(caster, Vector3f(0.0F, -1.0F, 1.0F).normalized(), [&](auto&, auto&) { return asked++ < 2; });

@@ -94,9 +94,9 @@ void sample(const Job& job, std::span<const Pixel> pixels, std::span<const Vecto
     const Vector3d phase = job.phase + column * per_column + row * per_row;
     for (const Vector3d& place : pattern) buffers.rays.push_back(sample_ray(job, place + phase, column, row));
   }
-  buffers.hits.resize(buffers.rays.size());
+  buffers.hits.clear();
+  for (const Ray& ray : buffers.rays) buffers.hits.push_back(job.caster.cast(ray));
   buffers.values.resize(buffers.rays.size());
-  job.caster.cast(buffers.rays, buffers.hits);
   job.shade(buffers.rays, buffers.hits, pattern.size(), buffers.values);
 }
 
@@ -137,12 +137,8 @@ bool is_uneven(const Job& job, const First& image, int column, int row) {
   return most - least > job.spread;
 }
 
-/// Adds more samples to the uneven pixels of some rows.
-void refine(const Job& job, const First& first, int top, int bottom, cv::Mat& image) {
-  Buffers buffers;
-  for (int row = top; row < bottom; ++row)
-    for (int column = 0; column < image.cols; ++column)
-      if (is_uneven(job, first, column, row)) buffers.pixels.push_back({column, row});
+/// Adds more samples to the pixels in the buffers, which it empties.
+void sample_more(const Job& job, Buffers& buffers, cv::Mat& image) {
   sample(job, buffers.pixels, job.more, buffers);
   const float share = static_cast<float>(job.first.size()) / static_cast<float>(job.first.size() + job.more.size());
   auto value = buffers.values.begin();
@@ -152,6 +148,18 @@ void refine(const Job& job, const First& first, int top, int bottom, cv::Mat& im
     float& mean = image.at<float>(row, column);
     mean = share * mean + (1.0F - share) * sum / static_cast<float>(job.more.size());
   }
+  buffers.pixels.clear();
+}
+
+/// Adds more samples to the uneven pixels of some rows, so many pixels at a time that the caches hold them.
+void refine(const Job& job, const First& first, int top, int bottom, cv::Mat& image) {
+  Buffers buffers;
+  for (int row = top; row < bottom; ++row)
+    for (int column = 0; column < image.cols; ++column) {
+      if (is_uneven(job, first, column, row)) buffers.pixels.push_back({column, row});
+      if (buffers.pixels.size() == kBlockColumns) sample_more(job, buffers, image);
+    }
+  sample_more(job, buffers, image);
 }
 
 }  // namespace
@@ -176,7 +184,7 @@ cv::Mat expose(const RayTable& table, const RayCaster& caster, const ExposurePos
   const double right = random.uniform(), down = random.uniform(), moment = random.uniform();
   // Long smears need more samples, and farther from where the first ones have shown them.
   const int reach =
-      1 + static_cast<int>(std::min(1.0, 0.25 * smear_rad(poses) / static_cast<double>(table.pixel_rad())));
+      1 + static_cast<int>(std::min(1.0, 0.5 * smear_rad(poses) / static_cast<double>(table.pixel_rad())));
   const std::vector<Vector3d> first = sample_pattern(sampling.first), more = sample_pattern(sampling.more * reach);
   const Job job{table, caster, poses, first, more, sampling.spread, reach, shade, {right, down, moment}};
   First image({table.width(), table.height()});

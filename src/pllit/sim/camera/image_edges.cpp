@@ -151,8 +151,7 @@ std::vector<ImageEdge> visible_runs(const Line& line, const PlaceEdges::View& vi
   const std::vector<Spot> spots = spots_along(*ends_C, view);
   if (spots.size() < 3 || (spots.front().px - spots.back().px).norm() < kLeastRun_px) return {};
   Sides sides{.rays = rays_beside(spots, view), .hits = {}, .kinds = {}};
-  sides.hits.resize(sides.rays.size());
-  caster.cast(sides.rays, sides.hits);
+  for (const Ray& ray : sides.rays) sides.hits.push_back(caster.cast(ray));
   for (std::size_t i = 0; i < spots.size(); ++i)
     sides.kinds.push_back(seen_as(spots[i].p_W, std::span<const Ray, 2>(&sides.rays[2 * i], 2),
                                   std::span<const Hit, 2>(&sides.hits[2 * i], 2)));

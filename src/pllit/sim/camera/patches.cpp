@@ -28,28 +28,20 @@ Patches::Patches(std::span<const Ray> rays, std::span<const Hit> hits, std::size
 
 void Patches::seek_sun_of(const std::vector<std::size_t>& chosen, const RayCaster& caster, const Vector3d& to_sun_W) {
   constexpr double far_m = 150.0, off_m = 0.01;
-  std::vector<Ray> rays;
-  rays.reserve(chosen.size());
-  for (const std::size_t i : chosen)
-    rays.push_back(
-        {rays_[i].origin_W + hits_[i].range_m * rays_[i].direction_W + off_m * hits_[i].normal_W.cast<double>(),
-         to_sun_W});
-  std::vector<std::uint8_t> blocked(rays.size());
-  caster.blocked(rays, far_m, blocked);
   in_sun_.assign(hits_.size(), 0);
-  for (std::size_t k = 0; k < chosen.size(); ++k) in_sun_[chosen[k]] = blocked[k] == 0;
+  for (const std::size_t i : chosen) {
+    const Vector3d p_W =
+        rays_[i].origin_W + hits_[i].range_m * rays_[i].direction_W + off_m * hits_[i].normal_W.cast<double>();
+    in_sun_[i] = !caster.blocked(p_W, p_W + far_m * to_sun_W);
+  }
 }
 
 void Patches::seek_mirrored_of(const std::vector<std::size_t>& chosen, const RayCaster& caster) {
-  std::vector<Ray> rays;
-  rays.reserve(chosen.size());
-  for (const std::size_t i : chosen) rays.push_back(mirrored_ray(rays_[i], hits_[i]));
-  std::vector<Hit> hits(rays.size());
-  caster.cast(rays, hits);
   mirrored_of_.assign(hits_.size(), 0);
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    mirrored_.push_back({rays[k], hits[k]});
-    mirrored_of_[chosen[k]] = mirrored_.size();
+  for (const std::size_t i : chosen) {
+    const Ray ray = mirrored_ray(rays_[i], hits_[i]);
+    mirrored_.push_back({ray, caster.cast(ray)});
+    mirrored_of_[i] = mirrored_.size();
   }
 }
 

@@ -41,7 +41,6 @@ inline void commit(RTCDevice device, RTCScene scene) {
 inline Owned<RTCScene> new_scene(RTCDevice device) {
   Owned<RTCScene> scene(rtcNewScene(device));
   check(device);
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   return scene;
 }
 

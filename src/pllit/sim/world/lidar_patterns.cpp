@@ -64,8 +64,9 @@ constexpr double kMid360Nods_Hz = 10.0;
 
 /// Evenly up and down between 1 and -1, rounded where it turns: a triangle's first three harmonics.
 double nod(double phase_rad) {
-  return (std::cos(phase_rad) + std::cos(3.0 * phase_rad) / 9.0 + std::cos(5.0 * phase_rad) / 25.0) /
-         (1.0 + 1.0 / 9.0 + 1.0 / 25.0);
+  const double c = std::cos(phase_rad), c2 = c * c;
+  const double third = c * (4.0 * c2 - 3.0), fifth = c * (c2 * (16.0 * c2 - 20.0) + 5.0);  // cos of 3 and 5 phases
+  return (c + third / 9.0 + fifth / 25.0) / (1.0 + 1.0 / 9.0 + 1.0 / 25.0);
 }
 
 Vector3d behind_nodding_mirror(const Laser& laser, Duration time) {

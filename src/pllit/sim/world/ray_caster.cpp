@@ -75,27 +75,6 @@ RTCRay embree_ray(const Vector3d& origin, const Vector3d& direction, float near_
           .flags = 0};
 }
 
-/// Rays that Embree is given together; where its instructions are narrower it splits them.
-constexpr std::size_t kPacket = 16;
-
-RTCRayHit16 packet_of(std::span<const Ray> rays, const Vector3d& centre_W, float reach_m) {
-  RTCRayHit16 packet{};
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const RTCRay ray = embree_ray(rays[i].origin_W - centre_W, rays[i].direction_W, 0.0F, reach_m);
-    packet.ray.org_x[i] = ray.org_x;
-    packet.ray.org_y[i] = ray.org_y;
-    packet.ray.org_z[i] = ray.org_z;
-    packet.ray.dir_x[i] = ray.dir_x;
-    packet.ray.dir_y[i] = ray.dir_y;
-    packet.ray.dir_z[i] = ray.dir_z;
-    packet.ray.tfar[i] = ray.tfar;
-    packet.ray.mask[i] = ray.mask;
-    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-  }
-  return packet;
-}
-
 }  // namespace
 
 struct RayCaster::Scene {
@@ -222,25 +201,6 @@ Hit RayCaster::cast(const Ray& ray) const {
   return scene_->hit_of(ray, answer.ray.tfar, {hit.Ng_x, hit.Ng_y, hit.Ng_z}, hit.instID[0], hit.primID);
 }
 
-void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
-    const auto some = rays.subspan(first, std::min(kPacket, rays.size() - first));
-    RTCRayHit16 answers = packet_of(some, scene_->centre_W, static_cast<float>(scene_->reach_m));
-    alignas(64) std::array<int, kPacket> valid{};
-    std::fill_n(valid.begin(), some.size(), -1);
-    rtcIntersect16(valid.data(), scene_->top.get(), &answers, &arguments);
-    const RTCHit16& hit = answers.hit;
-    for (std::size_t i = 0; i < some.size(); ++i)
-      hits[first + i] = hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
-                            ? Hit{}
-                            : scene_->hit_of(some[i], answers.ray.tfar[i], {hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]},
-                                             hit.instID[0][i], hit.primID[i]);
-  }
-}
-
 bool RayCaster::blocked(const Vector3d& from_W, const Vector3d& to_W) const {
   const Vector3d way_W = to_W - from_W;
   const double length_m = way_W.norm();
@@ -249,21 +209,6 @@ bool RayCaster::blocked(const Vector3d& from_W, const Vector3d& to_W) const {
   if (ray.tfar <= ray.tnear) return false;
   rtcOccluded1(scene_->top.get(), &ray);
   return ray.tfar < 0.0F;
-}
-
-void RayCaster::blocked(std::span<const Ray> rays, double length_m, std::span<std::uint8_t> blocked) const {
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
-    const auto some = rays.subspan(first, std::min(kPacket, rays.size() - first));
-    RTCRay16 packet = packet_of(some, scene_->centre_W, static_cast<float>(length_m)).ray;
-    std::ranges::fill(packet.tnear, kBlockedMargin_m);
-    alignas(64) std::array<int, kPacket> valid{};
-    std::fill_n(valid.begin(), some.size(), -1);
-    rtcOccluded16(valid.data(), scene_->top.get(), &packet, &arguments);
-    for (std::size_t i = 0; i < some.size(); ++i) blocked[first + i] = packet.tfar[i] < 0.0F;
-  }
 }
 
 }  // namespace pllit

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 
 #include "pllit/sim/world/place.hpp"
 
@@ -40,12 +39,8 @@ class RayCaster {
   void move_to(const Eigen::Vector3d& p_W, double t_s);
 
   Hit cast(const Ray& ray) const;
-  /// The same for many rays at once; rays that lie near each other in the span should point in similar directions.
-  void cast(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// Whether anything lies between two points (1 mm at either end apart).
   bool blocked(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const;
-  /// Whether anything lies on each of many rays, from 1 mm to length_m; for rays that are much alike. 0: nothing.
-  void blocked(std::span<const Ray> rays, double length_m, std::span<std::uint8_t> blocked) const;
 
  private:
   struct Scene;

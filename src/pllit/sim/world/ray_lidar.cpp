@@ -144,18 +144,19 @@ class Scanner {
     }
     for (std::size_t row = 0; row < order_.size(); ++row) {
       const std::size_t offset = row * batch_.shots;
-      run_.caster.cast(std::span(batch_.rays).subspan(offset + begin, end - begin),
-                       std::span(batch_.hits).subspan(offset + begin, end - begin));
-      for (std::size_t i = offset + begin; i < offset + end; ++i)
-        batch_.points_W[i] =
-            batch_.rays[i].origin_W + static_cast<double>(batch_.hits[i].range_m) * batch_.rays[i].direction_W;
+      for (std::size_t i = offset + begin; i < offset + end; ++i) {
+        const Ray& ray = batch_.rays[i];
+        batch_.hits[i] = run_.caster.cast(ray);
+        batch_.points_W[i] = ray.origin_W + static_cast<double>(batch_.hits[i].range_m) * ray.direction_W;
+      }
     }
   }
 
   /// The ray that a beam really is.
   Ray sent(const Beam& beam, Random noise) const {
     const Across across(beam.direction_L);
-    const double left = lidar_.beam_sigma_rad * noise.gaussian(), up = lidar_.beam_sigma_rad * noise.gaussian();
+    const double left = lidar_.beam_sigma_rad * quick_gaussian(noise),
+                 up = lidar_.beam_sigma_rad * quick_gaussian(noise);
     return ray(beam, beam.direction_L + left * across.left_L + up * across.up_L);
   }
 
@@ -168,8 +169,6 @@ class Scanner {
     const std::vector<Split> splits = lidar_.divergence_left_rad > 0.0 ? at_edges(begin, end) : std::vector<Split>();
     std::vector<Ray> rays;
     for (const Split& split : splits) add_side_rays(split, rays);
-    std::vector<Hit> hits(rays.size());
-    run_.caster.cast(rays, hits);
     std::size_t ray = 0;
     auto split = splits.begin();
     for (std::size_t row = 0; row < order_.size(); ++row)
@@ -180,7 +179,7 @@ class Scanner {
         const double middle_share = 1.0 - kSideShare * static_cast<double>(sides);
         echoes.add(run_.caster, surfaces_, batch_.rays[i], batch_.hits[i], middle_share);
         for (const std::size_t last = ray + sides; ray < last; ++ray)
-          echoes.add(run_.caster, surfaces_, rays[ray], hits[ray], kSideShare);
+          echoes.add(run_.caster, surfaces_, rays[ray], run_.caster.cast(rays[ray]), kSideShare);
         if (!echoes.empty())
           points_[i] = point(batch_.beams[i], echoes, random(first + static_cast<std::int64_t>(shot), order_[row], 1));
       }
@@ -208,7 +207,8 @@ class Scanner {
   }
 
   std::optional<Point> point(const Beam& beam, Echoes& echoes, Random random) const {
-    const double luck = random.gaussian(), range_error = random.gaussian(), intensity_error = random.uniform(-1.0, 1.0);
+    const double luck = quick_gaussian(random), range_error = quick_gaussian(random),
+                 intensity_error = random.uniform(-1.0, 1.0);
     const std::optional<Echo> echo = echoes.reported(lidar_, luck);
     if (!echo) return std::nullopt;
     double range_m = echo->range_m + lidar_.range_sigma_m * range_error;
