@@ -63,6 +63,19 @@ TEST(Degeneracy, FindsTheAxisOfACorridorThatNoisyNormalsSeemToObserve) {
   }
 }
 
+TEST(Degeneracy, FollowsACorridorByTheRevealsOfItsDoorsFewAsTheyAre) {
+  // Left to the IMU for minutes, a rig would be hundreds of metres off, where so little holds it to centimetres.
+  Random random(47);
+  const DegenerateDirections held =
+      observed_part(equations_of(random, corridor, 0.005, 30'000), SO3::Identity(), {}, {}).unobserved;
+  ASSERT_EQ(held.cols(), 1);
+  PlaneEquations equations = equations_of(random, corridor, 0.005, 30'000);
+  equations += equations_of(random, {Vector3d::UnitX()}, 0.005, 9);
+  const ObservedEquations observed = observed_part(equations, SO3::Identity(), held, {});
+  EXPECT_EQ(observed.localizability.degenerate, 0);
+  EXPECT_EQ(observed.sums.H, equations.sums.H);
+}
+
 TEST(Degeneracy, FindsAllThreeFreedomsOnASinglePlane) {
   Random random(43);
   const ObservedEquations observed =

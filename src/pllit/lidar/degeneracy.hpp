@@ -10,9 +10,9 @@ namespace pllit {
 
 struct DegeneracyConfig {
   /// A direction counts as observed where its information exceeds that of noisy normals by this factor ...
-  double min_over_noise = 8.0;
+  double min_over_noise = 2.0;
   /// ... and is at least this share of what it would be were every plane to face it (for turns a tenth of it).
-  double min_share = 0.0005;
+  double min_share = 2e-5;
   /// A direction that was not observed in the scan before must exceed both by this factor to count as observed again.
   double release = 3.0;
   /// Share of the way that such a direction moves, each scan, towards the one that this scan shows.
