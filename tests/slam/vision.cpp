@@ -9,7 +9,7 @@
 namespace pllit {
 namespace {
 
-const std::string kCorridor = "sim:corridor?rig=hilti2022&duration=12&seed=5";
+const std::string kCorridor = "sim:corridor?rig=hilti2022&bare=1&duration=12&seed=5";
 
 Config without_images() {
   Config config;
