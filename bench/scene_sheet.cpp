@@ -1,6 +1,7 @@
 // One picture of all scenes of the simulator, row by row: bench_scene_sheet OUT.jpg [SECOND]. Left the thermal image
 // after gain control and the visible one as they are SECOND (default 5) seconds after the start, right the scan before
-// them from above, 40 m wide (outdoors 160 m), points within 0.3 to 2.3 m above the lowest ones in it.
+// them from above (room 20 m wide, other indoor scenes 40 m, outdoors 160 m), points within 0.3 to 2.3 m above the
+// lowest ones in it.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

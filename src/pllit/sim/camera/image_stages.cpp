@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "pllit/sim/random.hpp"
+
 namespace pllit {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <opencv2/core/mat.hpp>
 
 #include "pllit/base/arena.hpp"
-#include "pllit/sim/random.hpp"
 
 namespace pllit {
 

@@ -12,8 +12,7 @@ namespace pllit {
 inline constexpr float kLeastMirror = 0.035F;
 
 /// The samples of some pixels, gathered into patches: those of one pixel on one surface with one normal at about one
-/// range, or in the sky. One further ray of a kind is cast for a patch, from its first sample, and together with those
-/// of the other patches.
+/// range, or in the sky. One further ray of a kind is cast for a patch, from its first sample.
 class Patches {
  public:
   /// The samples of one pixel stand together.

@@ -56,8 +56,7 @@ ThermalCamera::ThermalCamera(const ThermalCameraModel& model, const Place& place
 
 cv::Mat ThermalCamera::counts(const RayCaster& caster, const CameraPath& path, Time time, Arena& arena) {
   const Heat heat(*place_, band_, to_seconds(time - start_), rays_.pixel_rad());
-  const Sampling sampling{
-      .first = (model_.samples + 3) / 4, .more = 3 * model_.samples / 2, .spread = kUneven_K * band_.slope(300.0F)};
+  const Sampling sampling = sampling_for(model_.samples, kUneven_K * band_.slope(300.0F));
   const auto poses = fading_memory(path, time, from_seconds(model_.time_constant_s));
   const Shade shade = [&](auto rays, auto hits, std::size_t samples, auto radiance) {
     heat.shade(caster, rays, hits, samples, radiance);

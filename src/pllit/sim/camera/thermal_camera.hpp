@@ -14,10 +14,9 @@ struct ThermalCameraModel {
   Camera camera;
   double rate_hz = 25.0;
   double time_constant_s = 0.010;  ///< of the bolometers
-  int samples = 4;  ///< of each pixel, over its area and the time of exposure: a quarter as many where all around it is
-                    ///< even, one and a half to three times as many besides on edges, so that errors are less than even
-  double blur_sigma_px = 0.7;  ///< of the optics
-  double vignetting = 0.06;    ///< share of the scene's radiance that the housing takes the place of in the corners
+  int samples = 4;                 ///< of each pixel, over its area and the time of exposure; see sampling_for()
+  double blur_sigma_px = 0.7;      ///< of the optics
+  double vignetting = 0.06;        ///< share of the scene's radiance that the housing takes the place of in the corners
   double housing_K = 303.0;
   double counts_per_K = 30.0;  ///< at 300 K; counts are linear in radiance
   double counts_at_300K = 7000.0;

@@ -70,8 +70,7 @@ VisibleFrame VisibleCamera::capture(const RayCaster& caster, const CameraPath& p
     illumination.shade(caster, rays, hits, samples, brightness);
   };
   const auto full_scale = static_cast<float>(model_.full_light_s / effort_s);
-  const Sampling sampling{
-      .first = (model_.samples + 3) / 4, .more = 3 * model_.samples / 2, .spread = kUneven * full_scale};
+  const Sampling sampling = sampling_for(model_.samples, kUneven * full_scale);
   const auto poses = open_shutter(path, time, from_seconds(exposure_s));
   cv::Mat image =
       blurred(expose(rays_, caster, poses, sampling, random_.bits(), shade, arena), model_.blur_sigma_px, arena);

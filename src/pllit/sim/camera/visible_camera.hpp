@@ -20,8 +20,7 @@ struct AutoExposure {
 struct VisibleCameraModel {
   Camera camera;
   double rate_hz = 10.0;
-  int samples = 4;  ///< of each pixel, over its area and the time of exposure: a quarter as many where all around it is
-                    ///< even, one and a half to three times as many besides on edges, so that errors are less than even
+  int samples = 4;               ///< of each pixel, over its area and the time of exposure; see sampling_for()
   double blur_sigma_px = 0.5;    ///< of the optics
   double vignetting = 0.3;       ///< share of the light lost in the corners
   double full_well_e = 10000.0;  ///< electrons at full scale with gain 1

@@ -1,7 +1,6 @@
 #include "pllit/sim/world/ray_caster.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
 #include <utility>

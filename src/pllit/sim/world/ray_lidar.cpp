@@ -44,8 +44,6 @@ struct Batch {
 struct Split {
   std::size_t pulse = 0;
   bool sideways = false, upwards = false;
-
-  std::size_t sides() const { return (sideways ? 2U : 0U) + (upwards ? 2U : 0U); }
 };
 
 struct Point {
@@ -167,19 +165,17 @@ class Scanner {
 
   void measure(std::int64_t first, std::size_t begin, std::size_t end) {
     const std::vector<Split> splits = lidar_.divergence_left_rad > 0.0 ? at_edges(begin, end) : std::vector<Split>();
-    std::vector<Ray> rays;
-    for (const Split& split : splits) add_side_rays(split, rays);
-    std::size_t ray = 0;
+    std::vector<Ray> aside;
     auto split = splits.begin();
     for (std::size_t row = 0; row < order_.size(); ++row)
       for (std::size_t shot = begin; shot < end; ++shot) {
         const std::size_t i = row * batch_.shots + shot;
-        const std::size_t sides = split != splits.end() && split->pulse == i ? (split++)->sides() : 0;
+        aside.clear();
+        if (split != splits.end() && split->pulse == i) add_side_rays(*split++, aside);
         Echoes echoes;
-        const double middle_share = 1.0 - kSideShare * static_cast<double>(sides);
+        const double middle_share = 1.0 - kSideShare * static_cast<double>(aside.size());
         echoes.add(run_.caster, surfaces_, batch_.rays[i], batch_.hits[i], middle_share);
-        for (const std::size_t last = ray + sides; ray < last; ++ray)
-          echoes.add(run_.caster, surfaces_, rays[ray], run_.caster.cast(rays[ray]), kSideShare);
+        for (const Ray& ray : aside) echoes.add(run_.caster, surfaces_, ray, run_.caster.cast(ray), kSideShare);
         if (!echoes.empty())
           points_[i] = point(batch_.beams[i], echoes, random(first + static_cast<std::int64_t>(shot), order_[row], 1));
       }
@@ -202,7 +198,7 @@ class Scanner {
         if (row + 1 < rows && !same_surface(batch_, i, i + shots))
           pulses[own].upwards = pulses[own + width].upwards = true;
       }
-    std::erase_if(pulses, [](const Split& split) { return split.sides() == 0; });
+    std::erase_if(pulses, [](const Split& split) { return !split.sideways && !split.upwards; });
     return pulses;
   }
 
