@@ -109,7 +109,8 @@ Expected<SeverityTable> severity_table(const Config& config) {
 
 Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json& run, const SessionHeat* heat,
                             const SeverityTable& severity) {
-  auto whole = open_session(session.folder());
+  constexpr std::size_t kMapPoints = 500000;  // more a plan does not show
+  auto whole = open_session(session.folder(), kMapPoints);
   if (!whole) return std::unexpected(whole.error());
   ReportContent content{.title = "Inspection " + whole->folder.filename().string(),
                         .trajectory = std::move(whole->trajectory),

@@ -1,7 +1,6 @@
 #include "session_loops.hpp"
 
 #include "pllit/io/csv.hpp"
-#include "pllit/io/ply.hpp"
 #include "pllit/io/tum.hpp"
 #include "pllit/slam/frame_table.hpp"
 
@@ -24,10 +23,9 @@ Expected<void> write_loops(SessionWriter& session, const LoopResult& loops) {
   const auto odometry = read_interrupted_tum(session.folder() / "odometry.tum");
   if (!odometry) return std::unexpected(odometry.error());
   if (const auto done = session.replace_trajectory(loops.correction.corrected(*odometry)); !done) return done;
-  auto map = read_ply(session.folder() / "map.ply");
-  if (!map) return std::unexpected(map.error());
-  if (!odometry->empty()) move_points(*map, "time", odometry->front().time, loops.correction, *odometry);
-  return session.replace_map(*map);
+  if (odometry->empty()) return {};
+  return session.change_map(
+      [&](PointTable& part) { move_points(part, "time", odometry->front().time, loops.correction, *odometry); });
 }
 
 }  // namespace pllit::app

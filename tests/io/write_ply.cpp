@@ -82,6 +82,35 @@ TEST_F(PlyFile, OfAStreamIsTheOneWrittenAtOnce) {
   EXPECT_EQ(read_file(path_).value(), read_file(folder_ / "whole.ply").value());
 }
 
+TEST_F(PlyFile, IsTheSamePartByPart) {
+  const PointTable whole = some_points(1000, 2);
+  ASSERT_TRUE(write_ply(path_, whole));
+  auto reader = PlyReader::open(path_);
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->size(), 1000u);
+  std::vector<Eigen::Vector3f> points;
+  std::vector<float> values;
+  for (const std::size_t size : {1u, 0u, 700u, 900u}) {
+    const auto part = reader->next(size);
+    ASSERT_TRUE(part) << part.error().message;
+    points.insert(points.end(), part->points.begin(), part->points.end());
+    values.insert(values.end(), part->fields[0].values.begin(), part->fields[0].values.end());
+  }
+  EXPECT_EQ(points, whole.points);
+  EXPECT_EQ(values, whole.fields[0].values);
+  EXPECT_TRUE(reader->next(10)->points.empty());
+}
+
+TEST_F(PlyFile, IsThinnedEvenlyWhereItHasMorePointsThanOneWants) {
+  const PointTable whole = some_points(200000, 3);
+  ASSERT_TRUE(write_ply(path_, whole));
+  const auto thin = read_ply(path_, 30000);  // one in seven
+  ASSERT_TRUE(thin);
+  ASSERT_EQ(thin->points.size(), (200000u + 6u) / 7u);
+  for (std::size_t i = 0; i < thin->points.size(); ++i) ASSERT_EQ(thin->points[i], whole.points[7 * i]) << i;
+  EXPECT_EQ(thin->fields[1].values.back(), whole.fields[1].values[7 * (thin->points.size() - 1)]);
+}
+
 TEST_F(PlyFile, MayHoldOtherNumberTypesBesideFloat) {
   std::string bytes =
       "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 1\r\nproperty double x\r\nproperty float64 y\r\n"

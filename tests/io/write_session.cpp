@@ -169,15 +169,36 @@ TEST_F(SessionFolder, StaysReadableWhereTheDiskFillsUpWhileRunning) {
   EXPECT_EQ(session->map.points.size(), 30u);
 }
 
-TEST_F(SessionFolder, TakesAFinalMapOnceAndOtherCloudsBesideIt) {
+TEST_F(SessionFolder, TakesAChangeOfItsMapOnceAndOtherCloudsBesideIt) {
   auto writer = written(2);
-  ASSERT_TRUE(writer.replace_map(some_points(33, 1)));
-  EXPECT_EQ(open_session(path_)->map.points.size(), 33u);
+  ASSERT_TRUE(writer.append_map(some_points(300000, 1)));  // several parts
+  const PointTable before = open_session(path_)->map;
+  ASSERT_TRUE(writer.change_map([](PointTable& part) {
+    for (Eigen::Vector3f& p : part.points) p.x() += 1.0F;
+  }));
+  const PointTable after = open_session(path_)->map;
+  ASSERT_EQ(after.points.size(), before.points.size());
+  for (std::size_t i = 0; i < before.points.size(); ++i)
+    ASSERT_EQ(after.points[i], before.points[i] + Eigen::Vector3f::UnitX()) << i;
+  EXPECT_EQ(after.fields[1].values, before.fields[1].values);
   EXPECT_THAT(writer.append_map(some_points(1, 2)).error().message, HasSubstr("takes no more points"));
   ASSERT_TRUE(writer.write_cloud("thermal_map.ply", some_points(4, 3)));
   EXPECT_EQ(read_ply(path_ / "thermal_map.ply")->points.size(), 4u);
   ASSERT_TRUE(writer.write_text("report.html", "<html>"));
   EXPECT_EQ(read_file(path_ / "report.html").value(), "<html>");
+}
+
+TEST_F(SessionFolder, ChangesAMapWithoutPointsToOneWithout) {
+  auto writer = written(0);
+  ASSERT_TRUE(writer.change_map([](PointTable& part) { ASSERT_TRUE(part.points.empty()); }));
+  EXPECT_TRUE(open_session(path_)->map.points.empty());
+}
+
+TEST_F(SessionFolder, GivesAsManyPointsOfItsMapAsOneAsksFor) {
+  auto writer = written(2);
+  ASSERT_TRUE(writer.append_map(some_points(5000, 1)));
+  EXPECT_LE(open_session(path_, 1000)->map.points.size(), 1000u);
+  EXPECT_GE(open_session(path_, 1000)->map.points.size(), 500u);
 }
 
 TEST_F(SessionFolder, IsRefusedWhereItIsNone) {

@@ -109,17 +109,23 @@ Expected<void> replace_file(const std::filesystem::path& path, std::string_view 
   return put_in_place(path);
 }
 
-Expected<std::string> read_file(const std::filesystem::path& path) {
+Expected<std::ifstream> open_file(const std::filesystem::path& path) {
   std::error_code status;
   if (!std::filesystem::exists(path, status)) return input_error(std::format("{}: no such file", path.string()));
   if (std::filesystem::is_directory(path, status))
     return input_error(std::format("{}: is a folder, expected a file", path.string()));
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return input_error(std::format("{}: cannot be opened", path.string()));
+  return stream;
+}
+
+Expected<std::string> read_file(const std::filesystem::path& path) {
+  auto stream = open_file(path);
+  if (!stream) return std::unexpected(stream.error());
   std::string bytes, chunk(std::size_t{1} << 20, '\0');
-  while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || stream.gcount() > 0)
-    bytes.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
-  if (stream.bad()) return input_error(std::format("{}: cannot be read", path.string()));
+  while (stream->read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || stream->gcount() > 0)
+    bytes.append(chunk, 0, static_cast<std::size_t>(stream->gcount()));
+  if (stream->bad()) return input_error(std::format("{}: cannot be read", path.string()));
   return bytes;
 }
 

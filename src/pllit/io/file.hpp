@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -54,6 +55,9 @@ std::filesystem::path part_path(const std::filesystem::path& path);
 
 /// Renames the complete part_path(path) to path, in one step for every reader.
 Expected<void> put_in_place(const std::filesystem::path& path);
+
+/// A file to be read; an input error names one that is absent, a folder or unreadable.
+Expected<std::ifstream> open_file(const std::filesystem::path& path);
 
 /// The whole content of a file; an input error names a file that is absent or unreadable.
 Expected<std::string> read_file(const std::filesystem::path& path);

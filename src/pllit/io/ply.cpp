@@ -17,20 +17,6 @@ constexpr std::string_view kBeforeCount =
 
 std::string count_text(std::size_t points) { return std::format("{:010}", points); }
 
-/// One number property of a vertex: where its bytes lie in a row, and how they become a float.
-struct Property {
-  std::string name;
-  std::size_t offset;
-  float (*value)(const char* bytes);
-};
-
-struct Header {
-  std::size_t points = 0;
-  std::size_t row_bytes = 0;
-  std::size_t data_begin = 0;
-  std::vector<Property> properties;
-};
-
 template <class Number>
 float float_from(const char* bytes) {
   Number value;
@@ -52,7 +38,7 @@ constexpr std::array<NumberType, 8> kTypes{{{"float", "float32", 4, float_from<f
                                             {"uint", "uint32", 4, float_from<std::uint32_t>},
                                             {"int", "int32", 4, float_from<std::int32_t>}}};
 
-Expected<void> add_property(Header& header, std::istringstream& words) {
+Expected<void> add_property(PlyHeader& header, std::istringstream& words) {
   std::string type, name;
   words >> type >> name;
   const auto known = std::ranges::find_if(kTypes, [&](const auto& t) { return t.name == type || t.alias == type; });
@@ -63,7 +49,7 @@ Expected<void> add_property(Header& header, std::istringstream& words) {
 }
 
 /// Reads one header line into `header`; `element` is the element that properties belong to at this point.
-Expected<void> read_header_line(const std::string& line, Header& header, std::string& element) {
+Expected<void> read_header_line(const std::string& line, PlyHeader& header, std::string& element) {
   std::istringstream words(line);
   std::string key;
   words >> key;
@@ -83,41 +69,39 @@ Expected<void> read_header_line(const std::string& line, Header& header, std::st
   return {};
 }
 
-Expected<Header> read_header(const std::string& bytes) {
-  if (!bytes.starts_with("ply\n") && !bytes.starts_with("ply\r\n")) return input_error("is not a PLY file");
-  Header header;
-  std::string element;
-  for (std::size_t begin = 0, end = 0; (end = bytes.find('\n', begin)) != bytes.npos; begin = end + 1) {
-    std::string line = bytes.substr(begin, end - begin);
+Expected<PlyHeader> read_header(std::ifstream& stream) {
+  constexpr std::size_t kLongest = 1 << 16;  // bytes; what goes on without end is none
+  PlyHeader header;
+  std::string line, element;
+  for (bool first = true; header.data_begin < kLongest && std::getline(stream, line); first = false) {
+    header.data_begin += line.size() + 1;
     if (line.ends_with('\r')) line.pop_back();
-    if (line == "end_header") {
-      header.data_begin = end + 1;
-      return header;
-    }
+    if (first && line != "ply") return input_error("is not a PLY file");
+    if (line == "end_header") return header;
     if (auto read = read_header_line(line, header, element); !read) return std::unexpected(read.error());
   }
-  return input_error("its header does not end");
+  return input_error(header.data_begin == 0 ? "is not a PLY file" : "its header does not end");
 }
 
 /// Checks that the bytes hold what the header promises, before anything is allocated for it.
-Expected<void> check_size(const Header& header, std::size_t file_bytes) {
+Expected<void> check_size(const PlyHeader& header, std::uintmax_t file_bytes) {
   for (const std::string_view axis : {"x", "y", "z"})
-    if (std::ranges::count(header.properties, axis, &Property::name) != 1)
+    if (std::ranges::count(header.properties, axis, &PlyHeader::Property::name) != 1)
       return input_error(std::format("its vertices need one property {}", axis));
-  const std::size_t held = (file_bytes - header.data_begin) / header.row_bytes;
+  const std::uintmax_t held = (file_bytes - header.data_begin) / header.row_bytes;
   if (held < header.points)
     return input_error(std::format("promises {} points and holds {}: the file was cut", header.points, held));
   return {};
 }
 
-PointTable table_from(const Header& header, const char* rows) {
+PointTable table_from(const PlyHeader& header, const char* rows, std::size_t count) {
   PointTable table;
-  table.points.resize(header.points);
-  for (const Property& property : header.properties) {
+  table.points.resize(count);
+  for (const PlyHeader::Property& property : header.properties) {
     const auto axis = std::string_view("xyz").find(property.name);
     const bool is_axis = property.name.size() == 1 && axis != std::string_view::npos;
-    if (!is_axis) table.fields.push_back({property.name, std::vector<float>(header.points)});
-    for (std::size_t i = 0; i < header.points; ++i) {
+    if (!is_axis) table.fields.push_back({property.name, std::vector<float>(count)});
+    for (std::size_t i = 0; i < count; ++i) {
       const float value = property.value(rows + i * header.row_bytes + property.offset);
       if (is_axis)
         table.points[i][static_cast<Eigen::Index>(axis)] = value;
@@ -126,6 +110,16 @@ PointTable table_from(const Header& header, const char* rows) {
     }
   }
   return table;
+}
+
+/// Adds every n-th point of a part that begins with the cloud's point `first`.
+void add_every(PointTable& table, const PointTable& part, std::size_t first, std::size_t every) {
+  if (table.fields.empty())
+    for (const ScalarField& field : part.fields) table.fields.push_back({field.name, {}});
+  for (std::size_t i = (every - first % every) % every; i < part.points.size(); i += every) {
+    table.points.push_back(part.points[i]);
+    for (std::size_t f = 0; f < table.fields.size(); ++f) table.fields[f].values.push_back(part.fields[f].values[i]);
+  }
 }
 
 }  // namespace
@@ -166,13 +160,40 @@ Expected<void> write_ply(const std::filesystem::path& path, const PointTable& ta
   return stream->close();
 }
 
-Expected<PointTable> read_ply(const std::filesystem::path& path) {
-  const auto bytes = read_file(path);
-  if (!bytes) return std::unexpected(bytes.error());
-  const auto header = read_header(*bytes);
+Expected<PlyReader> PlyReader::open(const std::filesystem::path& path) {
+  auto stream = open_file(path);
+  if (!stream) return std::unexpected(stream.error());
+  auto header = read_header(*stream);
   if (!header) return in_context(path.string(), header.error());
-  if (auto checked = check_size(*header, bytes->size()); !checked) return in_context(path.string(), checked.error());
-  return table_from(*header, bytes->data() + header->data_begin);
+  std::error_code status;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, status);
+  if (status) return input_error(std::format("{}: {}", path.string(), status.message()));
+  if (auto checked = check_size(*header, bytes); !checked) return in_context(path.string(), checked.error());
+  return PlyReader(path, std::move(*stream), std::move(*header));
+}
+
+Expected<PointTable> PlyReader::next(std::size_t most) {
+  const std::size_t count = std::min(most, header_.points - read_);
+  std::string rows(count * header_.row_bytes, '\0');
+  if (!stream_.read(rows.data(), static_cast<std::streamsize>(rows.size())))
+    return input_error(std::format("{}: cannot be read beyond point {}", path_.string(), read_));
+  read_ += count;
+  return table_from(header_, rows.data(), count);
+}
+
+Expected<PointTable> read_ply(const std::filesystem::path& path, std::size_t most) {
+  constexpr std::size_t kPart = 1 << 16;
+  auto reader = PlyReader::open(path);
+  if (!reader) return std::unexpected(reader.error());
+  if (reader->size() <= most) return reader->next(most);
+  const std::size_t every = (reader->size() - 1) / std::max<std::size_t>(1, most) + 1;
+  PointTable table;
+  for (std::size_t read = 0; read < reader->size(); read += kPart) {
+    const auto part = reader->next(kPart);
+    if (!part) return part;
+    add_every(table, *part, read, every);
+  }
+  return table;
 }
 
 }  // namespace pllit

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pllit/io/file.hpp"
+#include "pllit/io/point_records.hpp"
 
 namespace pllit {
 namespace {
@@ -109,8 +110,24 @@ Expected<void> SessionWriter::replace_trajectory(const Trajectory& trajectory) {
   return replaced;
 }
 
-Expected<void> SessionWriter::replace_map(const PointTable& table) {
-  auto replaced = write_cloud(kMap, table);
+Expected<void> SessionWriter::change_map(const std::function<void(PointTable&)>& change) {
+  constexpr std::size_t kPart = 1 << 18;
+  const fs::path path = folder_ / kMap;
+  auto reader = PlyReader::open(path);
+  if (!reader) return std::unexpected(reader.error());
+  std::optional<PlyStream> changed;
+  do {  // an empty map has one part too
+    auto part = reader->next(kPart);
+    if (!part) return std::unexpected(part.error());
+    change(*part);
+    if (!changed) {
+      auto stream = PlyStream::create(part_path(path), field_names(*part));
+      if (!stream) return std::unexpected(stream.error());
+      changed.emplace(std::move(*stream));
+    }
+    if (auto written = changed->append(*part); !written) return written;
+  } while (changed->size() < reader->size());
+  auto replaced = changed->close().and_then([&] { return put_in_place(path); });
   if (replaced) map_.reset();
   return replaced;
 }
@@ -128,7 +145,7 @@ Expected<void> SessionWriter::write_text(std::string_view name, std::string_view
   return replace_file(folder_ / name, text);
 }
 
-Expected<Session> open_session(const fs::path& folder) {
+Expected<Session> open_session(const fs::path& folder, std::size_t most_map_points) {
   std::error_code status;
   if (!fs::is_directory(folder, status)) return input_error(std::format("{}: no such folder", folder.string()));
   if (!fs::exists(folder / kTrajectory, status))
@@ -139,7 +156,7 @@ Expected<Session> open_session(const fs::path& folder) {
   if (!odometry) return std::unexpected(odometry.error());
   auto health = read_csv(folder / kHealth);
   if (!health) return std::unexpected(health.error());
-  auto map = read_ply(folder / kMap);
+  auto map = read_ply(folder / kMap, most_map_points);
   if (!map) return std::unexpected(map.error());
   auto run = read_run(folder / kRun);
   if (!run) return std::unexpected(run.error());

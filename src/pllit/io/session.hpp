@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -47,8 +49,8 @@ class SessionWriter {
 
   /// Replaces trajectory.tum as a whole, once loops are closed; poses appended later go to odometry.tum only.
   Expected<void> replace_trajectory(const Trajectory& trajectory);
-  /// Replaces map.ply as a whole; nothing can be appended to it later.
-  Expected<void> replace_map(const PointTable& table);
+  /// Replaces map.ply by itself, changed part by part; nothing can be appended to it later.
+  Expected<void> change_map(const std::function<void(PointTable& part)>& change);
   /// Writes any other cloud of the session (thermal_map.ply).
   Expected<void> write_cloud(std::string_view name, const PointTable& table);
   /// Writes run.json; a reader sees the old one or the new one, never half of one.
@@ -83,7 +85,9 @@ struct Session {
   std::optional<nlohmann::ordered_json> run;  ///< none where the run was killed before it wrote one
 };
 
-/// Reads a session, finished or interrupted: unfinished last lines are ignored. Input errors name the file.
-Expected<Session> open_session(const std::filesystem::path& folder);
+/// Reads a session, finished or interrupted: unfinished last lines are ignored. Input errors name the file. Of a map
+/// with more points than most_map_points it reads every n-th.
+Expected<Session> open_session(const std::filesystem::path& folder,
+                               std::size_t most_map_points = std::numeric_limits<std::size_t>::max());
 
 }  // namespace pllit
