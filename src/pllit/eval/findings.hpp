@@ -18,7 +18,7 @@ struct TrueObject {
   std::string name;
   bool finding = false;
   Time begins{};                           ///< when it became hot, or was brought
-  Vector3d centroid_W = Vector3d::Zero();  ///< of its surface that shows from the path
+  Vector3d centroid_W = Vector3d::Zero();  ///< of its surface that the camera saw
   std::optional<Time> first_seen{};        ///< first image after that which showed it; nothing: never seen
 };
 

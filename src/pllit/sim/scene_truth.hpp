@@ -19,7 +19,7 @@ struct SceneObject {
   std::string arrival;                     ///< "heated" or "brought"; "there" where it was hot from the start
   double begins_s = 0.0;                   ///< since the start
   double by_K = 0.0;                       ///< warmer than its surroundings or than it was
-  Vector3d centroid_W = Vector3d::Zero();  ///< of the surface that shows from the path
+  Vector3d centroid_W = Vector3d::Zero();  ///< of the surface that the camera saw; if none, of what faces the path
   std::optional<double> first_seen_s;      ///< first frame with enough unoccluded pixels
 };
 

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pllit {
 namespace {
-
-constexpr double kFarthest_m = 15.0;
 
 struct Window {
   int left, top, right, bottom;  // inclusive
@@ -17,7 +16,7 @@ std::optional<Window> window_of(const Actor& actor, const Camera& camera, const 
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector3f& vertex : actor.mesh_O.vertices) {
     const Vector3d p_C = T_C_O.act(vertex.cast<double>());
-    if (p_C.norm() > kFarthest_m) return std::nullopt;
+    if (p_C.norm() > Sightings::kFarthest_m) return std::nullopt;
     if (const auto pixel = camera.project(p_C)) box.extend(*pixel);
   }
   if (box.isEmpty()) return std::nullopt;
@@ -28,17 +27,24 @@ std::optional<Window> window_of(const Actor& actor, const Camera& camera, const 
   return Window{floor_of(seen.min().x()), floor_of(seen.min().y()), floor_of(seen.max().x()), floor_of(seen.max().y())};
 }
 
-bool fills_enough(std::uint32_t actor, const Window& window, const RayCaster& caster, const Camera& camera,
-                  const SE3& T_W_C) {
+/// Points of an actor that every step-th pixel of a window shows, in its own frame; no more than `most`.
+std::vector<Vector3f> points_in(const Window& window, int step, std::size_t most, std::uint32_t actor,
+                                const RayCaster& caster, const Camera& camera, const SE3& T_W_C) {
   const Matrix3d R_W_C = T_W_C.rotation();
-  int pixels = 0;
-  for (int v = window.top; v <= window.bottom; ++v)
-    for (int u = window.left; u <= window.right; ++u) {
+  std::vector<Vector3f> points_O;
+  for (int v = window.top; v <= window.bottom; v += step)
+    for (int u = window.left; u <= window.right && points_O.size() < most; u += step) {
       const Hit hit = caster.cast(Ray{T_W_C.translation(), R_W_C * camera.ray({u, v})});
-      pixels += hit && hit.actor == actor;
-      if (pixels >= Sightings::kPixels) return true;
+      if (hit && hit.actor == actor) points_O.push_back(hit.p_own);
     }
-  return false;
+  return points_O;
+}
+
+/// Of a window in which so many rays are enough.
+int step_of(const Window& window) {
+  constexpr double kRays = 2500.0;
+  const double pixels = (window.right - window.left + 1.0) * (window.bottom - window.top + 1.0);
+  return std::max(1, static_cast<int>(std::sqrt(pixels / kRays)));
 }
 
 }  // namespace
@@ -47,12 +53,31 @@ double begins_s(const Actor& actor) {
   return actor.heating.empty() ? actor.appears_s : std::max(actor.appears_s, actor.heating.front().at_s);
 }
 
+void Sighting::add(const Vector3f& p_O) {
+  Patch& patch = patches_[voxel_key(voxel_of(p_O, 1.0F / static_cast<float>(kPatch_m)))];
+  patch.sum_m += p_O;
+  patch.points += 1.0F;
+}
+
+std::optional<Vector3d> Sighting::centroid_O() const {
+  if (patches_.empty()) return std::nullopt;
+  Vector3d sum_m = Vector3d::Zero();
+  for (const auto& [key, patch] : patches_) sum_m += (patch.sum_m / patch.points).cast<double>();
+  return sum_m / static_cast<double>(patches_.size());
+}
+
 void Sightings::look(const RayCaster& caster, const Camera& camera, const SE3& T_W_C, double t_s) {
-  for (std::uint32_t i = 0; i < first_s_.size(); ++i) {
+  for (std::uint32_t i = 0; i < seen_.size(); ++i) {
     const Actor& actor = place_->actors()[i];
-    if (!actor.finding || first_s_[i] || t_s < begins_s(actor) || t_s > actor.vanishes_s) continue;
+    if (!actor.finding || t_s < begins_s(actor) || t_s > actor.vanishes_s) continue;
     const auto window = window_of(actor, camera, T_W_C.inverse() * actor.path.front().T_W_O);
-    if (window && fills_enough(i, *window, caster, camera, T_W_C)) first_s_[i] = t_s;
+    if (!window) continue;
+    Sighting& sighting = seen_[i];
+    if (!sighting.first_s && points_in(*window, 1, kPixels, i, caster, camera, T_W_C).size() == kPixels)
+      sighting.first_s = t_s;
+    if (!sighting.first_s) continue;
+    constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+    for (const Vector3f& p_O : points_in(*window, step_of(*window), kAll, i, caster, camera, T_W_C)) sighting.add(p_O);
   }
 }
 

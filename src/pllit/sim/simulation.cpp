@@ -275,7 +275,10 @@ SceneTruth Simulation::scene_truth() const {
   for (std::size_t i = 0; i < actors.size(); ++i) {
     if (actors[i].path.size() > 1) continue;  // people and cars go their own way
     truth.objects.push_back(object_of(actors[i], parts.config, path_W));
-    truth.objects.back().first_seen_s = parts.sightings->first_s()[i];
+    const Sighting& sighting = parts.sightings->seen()[i];
+    truth.objects.back().first_seen_s = sighting.first_s;
+    if (const auto centroid_O = sighting.centroid_O())
+      truth.objects.back().centroid_W = actors[i].path.front().T_W_O.act(*centroid_O);
   }
   return truth;
 }

@@ -63,7 +63,8 @@ Expected<std::unique_ptr<Place>> make_place(const PlaceConfig& config);
 std::vector<Eigen::Vector3d> positions_of(const Trajectory& trajectory);
 
 /// Centroid of the actor's surface that faces the path (weighted by area, foreshortening and inverse squared distance
-/// over the path's points within 6 m, or over the nearest one), in W at a time: the truth for where it was found.
+/// over the path's points within 6 m, or over the nearest one), in W at a time: where it is, for a camera that never
+/// saw it.
 Eigen::Vector3d visible_centroid_W(const Actor& actor, double at_s, const std::vector<Eigen::Vector3d>& path_W);
 
 }  // namespace pllit
