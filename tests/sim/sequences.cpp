@@ -29,10 +29,11 @@ TEST(Sequences, AreThePapersRowsEachInAWorldOfItsOwn) {
 }
 
 TEST(Sequences, BecomeAddressesWithTheSeedInTheirWorld) {
-  EXPECT_EQ(expanded_address("sim:A1").value(), "sim:room?rig=inspection&finding=table&seed=41000");
+  EXPECT_EQ(expanded_address("sim:A1").value(), "sim:room?rig=inspection&finding=table&images=counts&seed=41000");
   EXPECT_EQ(expanded_address("sim:A1?seed=7&duration=20").value(),
-            "sim:room?rig=inspection&finding=table&duration=20&seed=41007");
-  EXPECT_EQ(expanded_address("sim:A1?finding=none").value(), "sim:room?rig=inspection&finding=none&seed=41000");
+            "sim:room?rig=inspection&finding=table&images=counts&duration=20&seed=41007");
+  EXPECT_EQ(expanded_address("sim:A1?finding=none").value(),
+            "sim:room?rig=inspection&images=counts&finding=none&seed=41000");
   EXPECT_EQ(expanded_address("sim:room?seed=3").value(), "sim:room?seed=3");
   EXPECT_EQ(expanded_address("drive.bag").value(), "drive.bag");
 }

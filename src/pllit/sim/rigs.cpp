@@ -64,7 +64,9 @@ SimRig ntu4dradlm() {
 SimRig inspection() {
   SimRig rig{
       .name = "inspection", .imu = known_imu("hi71"), .lidar = livox_mid360(), .thermal = botu_tb640(), .visible = {}};
-  rig.T_I_L = pose_from(SO3::Identity(), {0.02, 0.0, 0.12});
+  // Level, it would see nothing of the lower half of what the camera sees.
+  constexpr double tilt = 25.0 * std::numbers::pi / 180.0;
+  rig.T_I_L = pose_from(exp_so3({0.0, tilt, 0.0}), {0.02, 0.0, 0.12});
   rig.T_I_C = pose_from(rotation_from(Eigen::Quaterniond(looking_ahead())), {0.08, 0.0, 0.07});
   return rig;
 }

@@ -19,8 +19,25 @@ constexpr double kBody_m = 0.35;  // half a person's width, stride and all
 struct Spot {
   Vector2d centre;
   double yaw_rad;  ///< towards the path, in quarter turns
-  Vector2d seen_from;
+  std::vector<Vector2d> seen_from;
 };
+
+/// From where on a stretch of the path, given by indices, something lies ahead and in sight; nothing where it hardly
+/// ever does.
+std::optional<Vector2d> seen_ahead(const FloorPlan& plan, std::size_t from, std::size_t to, const Vector2d& centre,
+                                   double z_m) {
+  constexpr double kReach_m = 6.0, kAhead_cos = 0.95;  // a camera sees 20 degrees and more to either side
+  constexpr std::size_t kStep = 4, kOften = 6;
+  const auto& path = plan.site().path_P.points();
+  std::vector<Vector2d> places;
+  for (std::size_t i = std::max(from, kStep); i + kStep < std::min(to, path.size()); ++i) {
+    const Vector2d ahead = (path[i + kStep] - path[i - kStep]).head<2>(), towards = centre - path[i].head<2>();
+    if (towards.norm() > kReach_m || ahead.dot(towards) < kAhead_cos * ahead.norm() * towards.norm()) continue;
+    if (plan.sees(path[i].head<2>(), centre, z_m)) places.emplace_back(path[i].head<2>());
+  }
+  if (places.size() < kOften) return std::nullopt;
+  return places[places.size() / 2];
+}
 
 bool seen_while_passing(const FloorPlan& plan, std::size_t point, const Vector2d& centre, double z_m) {
   const auto& path = plan.site().path_P.points();
@@ -32,12 +49,15 @@ bool seen_while_passing(const FloorPlan& plan, std::size_t point, const Vector2d
   return true;
 }
 
-/// A free spot that comes into sight after a time of the motion.
+/// A free spot that comes into sight after a time of the motion, and where that is not its start, before it too, if the
+/// path leads anywhere twice: what nobody saw before has not changed.
 std::optional<Spot> find_spot(const PlaceConfig& config, const AlignedBox2d& box_P, double size_m, double z_m,
                               double after_s, const FloorPlan& plan, Random& random) {
   const auto& path = plan.site().path_P.points();
   const double from = std::clamp(after_s / config.duration_s + 0.05, 0.05, 0.8);
-  for (int attempt = 0; attempt < 4000; ++attempt) {
+  const auto start = static_cast<std::size_t>(from * static_cast<double>(path.size()));
+  constexpr int kAttempts = 6000, kPicky = 4000;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const auto point = static_cast<std::size_t>(random.uniform(from, 0.95) * static_cast<double>(path.size()));
     const double angle = random.uniform(-std::numbers::pi, std::numbers::pi),
                  range_m = random.uniform(kNearest_m + 0.05, kFarthest_m);
@@ -47,17 +67,23 @@ std::optional<Spot> find_spot(const PlaceConfig& config, const AlignedBox2d& box
     if (!box_P.contains(box) || !plan.free(box, 0.1)) continue;
     if (plan.site().path_P.nearest(centre, kFarthest_m).distance_m < kNearest_m) continue;
     if (!seen_while_passing(plan, point, centre, z_m)) continue;
+    const auto later = seen_ahead(plan, start, path.size(), centre, z_m),
+               earlier = after_s > 0.0 ? seen_ahead(plan, 0, start, centre, z_m) : later;
+    if (attempt < kPicky && !(later && earlier)) continue;
     const Vector2d back = from_path - centre;
     const double quarter = 0.5 * std::numbers::pi;
-    return Spot{centre, quarter * std::round(std::atan2(back.y(), back.x()) / quarter), from_path};
+    return Spot{centre,
+                quarter * std::round(std::atan2(back.y(), back.x()) / quarter),
+                {from_path, later.value_or(from_path), earlier.value_or(from_path)}};
   }
   return std::nullopt;
 }
 
 /// Keeps furniture out of the line of sight.
 void take_sight(const Spot& spot, FloorPlan& plan) {
-  for (double share = 0.0; share < 1.0; share += 0.05)
-    plan.take(footprint(spot.centre + share * (spot.seen_from - spot.centre), 0.2, 0.2), 0.0);
+  for (const Vector2d& from : spot.seen_from)
+    for (double share = 0.0; share < 1.0; share += 0.05)
+      plan.take(footprint(spot.centre + share * (from - spot.centre), 0.2, 0.2), 0.0);
 }
 
 Actor standing(std::string name, Mesh mesh, const Spot& spot, double z_m, const SE3& T_W_P) {
@@ -135,7 +161,7 @@ Expected<std::vector<Actor>> add_findings(const PlaceConfig& config, const Align
   };
   const auto no_spot = [] {
     return input_error(
-        "no free spot within 1.5 to 3.2 m of the path and in its sight for another finding or distractor: "
+        "no free spot within 1.5 to 3.2 m of the path and in sight before and after for another finding or distractor: "
         "ask for fewer, take another seed or a longer path");
   };
   const SE3& T_W_P = plan.site().T_W_P;
