@@ -4,6 +4,7 @@ and how often something is reported that is none.
 
     bench/heat.py --rows A1 A2 A3 --seeds 10                    # seeds 1 to 10 of each row
     bench/heat.py --rows A2 --first-seed 31 --seeds 1 --pictures # with bench_finding_pictures: what images show of every alarm
+    bench/heat.py --rows A1 A2 A3 --video                        # the video after gain control instead of raw counts
     bench/heat.py --rows A1 --name calm -- --set advanced.anomalies.min_change=45
 
 Recordings are rendered once and kept up to --cache-gb in results/heat; runs that exist are not run again, so that a call that was
@@ -31,6 +32,7 @@ def arguments():
     parser.add_argument("--first-seed", type=int, default=1, help="... from this one on")
     parser.add_argument("--name", default="", help="keeps these runs apart from those with other settings")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
+    parser.add_argument("--video", action="store_true", help="8-bit video after gain control instead of raw counts")
     parser.add_argument("--pictures", action="store_true", help="draw each alarm and what was missed into the sessions")
     parser.add_argument("--out", type=pathlib.Path, default=sequences.ROOT / "results" / "heat")
     parser.add_argument("--cache-gb", type=float, default=30.0)
@@ -40,8 +42,8 @@ def arguments():
 
 def findings_of(row, seed, wanted):
     """What `pllit eval --findings` says of a walk, and how long it was watched; nothing where the run failed."""
-    bag = sequences.recording(row, seed, wanted)
-    session = wanted.out / (f"{row['name']}-{seed}" + (f"-{wanted.name}" if wanted.name else ""))
+    bag = sequences.recording(row, seed, wanted, images="agc" if wanted.video else None)
+    session = wanted.out / (f"{row['name']}-{seed}" + ("-video" if wanted.video else "") + (f"-{wanted.name}" if wanted.name else ""))
     scene = bag.with_suffix(".scene.json")
     source = [str(bag), "--truth", str(bag.with_suffix(".tum")), "--config", row["config"], "--set", "loop.enabled=false"]
     summary = sequences.summary_of(session, source + wanted.more)

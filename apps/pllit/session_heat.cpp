@@ -101,9 +101,9 @@ Expected<SeverityTable> severity_table(const Config& config) {
   const auto text = read_file(file);
   if (!text) return in_context("advanced.report.severity", text.error());
   auto table = parse_severity(*text, file);
-  if (table && config.thermography.unit != IntensityUnit::kelvin)
-    spdlog::warn("{} classes temperatures; these images are in {}, so nothing will be classed", file,
-                 name_of(config.thermography.unit));
+  if (table && config.thermography.unit_choice != UnitChoice::kelvin)
+    spdlog::warn("{} classes temperatures, but advanced.anomalies.unit is not kelvin, so nothing will be classed",
+                 file);
   return table;
 }
 
@@ -121,6 +121,7 @@ Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json
     const ThermographyConfig& config = heat->stage.config();
     content.has_images = heat->stage.map().size() > 0;
     content.unit = config.unit;
+    content.counts_per_kelvin = config.counts_per_kelvin;
     content.radiometry = config.radiometry;
     content.voxel_m = config.map.voxel_m;
     content.known_after = config.map.model.learned_after;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "pllit/geometry/lie_json.hpp"
+#include "pllit/io/anomalies_file.hpp"
 #include "pllit/io/ply.hpp"
 #include "pllit/io/session.hpp"
 #include "pllit/map/visit_changes.hpp"
@@ -31,15 +32,22 @@ struct CompareOptions {
 
 struct Visit {
   Session session;  ///< without its map's points, which stand below
+  ThermographyConfig thermography;
   VisitMap map;
   VisitHeat seen;
 };
 
-/// Where the LiDAR was on the rig; nothing where the run was killed before it wrote that down.
-std::optional<SE3> lidar_on_rig(const Session& session) {
+/// What the run was told; nothing where it was killed before it wrote that down.
+std::optional<Config> config_of(const Session& session) {
   if (!session.run || session.odometry.empty()) return std::nullopt;
   const auto config = load_config(session.run->value("config", ""), "run.json");
-  return config ? std::optional(make_rig(config->rig).T_I_L) : std::nullopt;
+  return config ? std::optional(*config) : std::nullopt;
+}
+
+/// What the visit's images were: its own configuration, or where that is lost what its findings are in.
+ThermographyConfig thermography_of(const std::optional<Config>& config, const fs::path& folder) {
+  const ThermographyConfig thermography = config ? config->thermography : open_thresholds();
+  return by_unit(thermography, read_unit(folder / "anomalies.json").value_or(unit_of(thermography, true)));
 }
 
 /// Points of the map, each with the place that the LiDAR measured it from.
@@ -65,13 +73,17 @@ Expected<Visit> read_visit(const fs::path& folder) {
     return input_error(std::format("'{}' holds no thermal_map.ply: that run saw no images", folder.string()));
   auto heat = read_ply(folder / "thermal_map.ply");
   if (!heat) return std::unexpected(heat.error());
-  const auto T_I_L = lidar_on_rig(*session);
+  const auto config = config_of(*session);
+  const auto T_I_L = config ? std::optional(make_rig(config->rig).T_I_L) : std::nullopt;
   auto sightlines_W = sightlines_of(*session, T_I_L);
   if (!T_I_L)
     spdlog::warn("'{}' does not say where its LiDAR was on the rig: what is new or gone cannot be told by it",
                  folder.string());
   VisitMap map{session->trajectory, std::move(session->map.points)};
-  return Visit{std::move(*session), std::move(map), {std::move(*heat), std::move(sightlines_W)}};
+  return Visit{std::move(*session),
+               thermography_of(config, folder),
+               std::move(map),
+               {std::move(*heat), std::move(sightlines_W)}};
 }
 
 void move(VisitHeat& seen, const SE3& T_A_B) {
@@ -97,10 +109,14 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
                         std::optional<RegionComparison>& regions) {
   auto visit = read_visit(folder);
   if (!visit) return std::unexpected(visit.error());
+  if (visit->thermography.unit != baseline.thermography.unit)
+    return input_error(
+        std::format("'{}' is in {}, but the baseline '{}' in {}: run one of them again in the other's unit", folder,
+                    name_of(visit->thermography.unit), baseline_folder, name_of(baseline.thermography.unit)));
   const auto located = relocalise(baseline.map, visit->map);
   if (!located) return in_context(std::format("comparing '{}'", folder), located.error());
   move(visit->seen, located->T_A_B);
-  const VisitChanges found = changes_between(baseline.seen, visit->seen);
+  const VisitChanges found = changes_between(baseline.seen, visit->seen, visit_changes_config(baseline.thermography));
   if (!found.same_site)
     return input_error(std::format(
         "comparing '{}': where it fits onto '{}' only {:.0f} % of its surfaces lie on surfaces measured there; "

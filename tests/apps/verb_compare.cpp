@@ -159,9 +159,13 @@ TEST_F(CompareVerb, RefusesBeforeItComparesWhatCannotBeRight) {
 TEST_F(CompareVerb, ComparesNoGreysWithTemperatures) {
   const std::string monday = session({.name = "monday"});
   const std::string friday = session({.name = "friday", .day = 4, .unit = IntensityUnit::count});
-  const auto [exit_code, out, err] = run({"compare", monday, friday, "--regions", regions()});
-  EXPECT_EQ(exit_code, 2);
-  EXPECT_THAT(err, HasSubstr("is in count, but the baseline"));
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--regions", regions()}}) {
+    std::vector<std::string> words{"compare", monday, friday};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto [exit_code, out, err] = run(words);
+    EXPECT_EQ(exit_code, 2);
+    EXPECT_THAT(err, HasSubstr("is in count, but the baseline"));
+  }
 }
 
 }  // namespace

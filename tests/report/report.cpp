@@ -54,6 +54,19 @@ TEST(Report, ClaimsNoTemperatureOfGreysAndCounts) {
   EXPECT_THAT(report_html(content, run_json()), HasSubstr("major: repair at once (NETA 100.18"));
 }
 
+TEST(Report, TellsDifferencesOfCountsInKelvinWhereTheUserCalibratedThem) {
+  ReportContent content = visit();
+  content.unit = IntensityUnit::count;
+  content.anomalies = {finding(3, 120.0)};
+  EXPECT_THAT(report_html(content, run_json()), Not(HasSubstr(" K<")));
+  content.counts_per_kelvin = 30.0;
+  const std::string html = report_html(content, run_json());
+  EXPECT_THAT(html, HasSubstr("60.0 counts on average"));
+  EXPECT_THAT(html, HasSubstr("about 2.0 and 4.0 K"));
+  EXPECT_THAT(html, HasSubstr("30.0 counts a kelvin"));
+  EXPECT_THAT(html, Not(HasSubstr("NETA"))) << "no class without a radiometric camera";
+}
+
 TEST(Report, SaysWhatWasNotSeenAndWhenItWasInDoubt) {
   ReportContent content = visit();
   content.doubts = {{1'700'000'003.0, 1'700'000'004.5, "degraded", "scan not matched: <few> points"}};

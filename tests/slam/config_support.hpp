@@ -72,7 +72,7 @@ inline Config random_config(unsigned seed) {
   RandomValue value(seed);
   for (Key& key : keys_of(config).keys) value.draw(key);
   std::ranges::sort(config.rig.lidar.range_m);
-  if (config.thermography.unit != IntensityUnit::kelvin) config.thermography.radiometry = {};
+  if (config.thermography.unit_choice != UnitChoice::kelvin) config.thermography.radiometry = {};
   RigConfig::Camera& camera = config.rig.camera;
   if (seed % 3 == 0) camera.size_px = {0, 0};
   for (const int i : {0, 1}) camera.intrinsics_px[2 + i] = 0.5 * camera.size_px[i];

@@ -91,6 +91,7 @@ struct Watched {
   World world;
   ThermographyConfig settings = config();
   double drift_grey = 12.0;  ///< of the gain control
+  bool counts = false;  ///< 16-bit counts, 30 a kelvin, that drift; a grey of the world is then a fifth of a kelvin
   Thermography stage{camera(), settings};
   Random random{1};
   double t_s = 0.0;
@@ -109,7 +110,7 @@ struct Watched {
       if (std::isfinite(range_m))
         input.points_W.push_back((T_W_C.translation() + (range_m + random.normal(0.01)) * ray_W).cast<float>());
     }
-    if (!frozen) raw = rendered(T_W_C, R_W_C);
+    if (!frozen) raw = counts ? counted(T_W_C, R_W_C) : rendered(T_W_C, R_W_C);
     input.raw = raw.clone();
     const ThermographyFrame frame = stage.process(input);
     if (!frame.confirmed.empty() && !alarm_s) alarm_s = t_s;
@@ -149,7 +150,24 @@ struct Watched {
       }
     return image;
   }
+  cv::Mat counted(const SE3& T_W_C, const Matrix3d& R_W_C) {
+    const double gain = 1.0 + 0.002 * std::sin(0.3 * t_s), bias = 60.0 * std::sin(0.17 * t_s);
+    cv::Mat image(camera().height, camera().width, CV_16UC1);
+    for (int row = 0; row < image.rows; ++row)
+      for (int column = 0; column < image.cols; ++column) {
+        const auto hit = world.hit(T_W_C.translation(), R_W_C * camera().ray({column, row}), t_s);
+        const double count = gain * (6500.0 + 6.0 * hit.grey + random.normal(2.0)) + bias;
+        image.at<std::uint16_t>(row, column) = static_cast<std::uint16_t>(count + 0.5);
+      }
+    return image;
+  }
 };
+
+ThermographyConfig counting() {
+  ThermographyConfig settings = open_thresholds();
+  settings.sampling = config().sampling;
+  return settings;
+}
 
 TEST(Thermography, RaisesNoAlarmWhereNothingHappensButGainControl) {
   Watched watched{.world = room()};
@@ -181,6 +199,41 @@ TEST(Thermography, FindsAKnownSurfaceThatHeatsUp) {
   ASSERT_EQ(watched.alarms().size(), 1u);
   EXPECT_EQ(watched.alarms()[0].state, AnomalyState::confirmed);
   EXPECT_FALSE(watched.stage.anomaly_points().points.empty());
+}
+
+TEST(Thermography, FindsInCountsWhatWarmsUpByFewKelvinWithinItsFirstLook) {
+  Watched watched{.world = room(), .settings = counting(), .counts = true};
+  watched.world.boxes.push_back(on_table(90.0));
+  watched.world.boxes.back().there = [](double t_s) { return t_s > 5.0; };  // cool, so that it is no finding
+  watched.world.boxes.back().grey = [](double t_s) {
+    return t_s < 6.0 ? 90.0 : 90.0 + 60.0 * (1.0 - std::exp((6.0 - t_s) / 10.0));
+  };
+  watched.until(14.0);
+  ASSERT_EQ(watched.alarms().size(), 1u) << watched.told();
+  const Anomaly alarm = watched.alarms()[0];
+  EXPECT_LT(*watched.alarm_s, 12.0) << "3 K are reached after 2.9 s, and must last, from two viewpoints";
+  EXPECT_LT((alarm.position_W - kOnTable).norm(), 0.15);
+  EXPECT_GT(alarm.extent_m.maxCoeff(), 0.2) << "the whole of it";
+  EXPECT_LT(alarm.extent_m.maxCoeff(), 0.5) << "and no more";
+}
+
+TEST(Thermography, TakesTheUnitFromTheFirstImageAndNoOthersAfterIt) {
+  Watched watched{.world = room(), .settings = counting(), .counts = true};
+  watched.image();
+  EXPECT_EQ(watched.stage.config().unit, IntensityUnit::count);
+  EXPECT_EQ(watched.stage.config().map.model.min_change, 90.0);
+  watched.counts = false;
+  EXPECT_EQ(watched.image().use, ThermographyFrame::Use::other_depth);
+  Watched video{.world = room(), .settings = counting()};
+  video.image();
+  EXPECT_EQ(video.stage.config().unit, IntensityUnit::grey);
+}
+
+TEST(Thermography, RaisesNoAlarmInCountsThatDrift) {
+  Watched watched{.world = room(), .settings = counting(), .counts = true};
+  watched.world.boxes.push_back({{4.6, 0.8, 0.6}, {0.6, 0.8, 0.6}, steady(170.0)});
+  watched.until(30.0);
+  EXPECT_TRUE(watched.alarms().empty()) << watched.told();
 }
 
 TEST(Thermography, TellsWhenEachHotPointWasLastSeenSoThatLoopsCanMoveIt) {
@@ -321,7 +374,7 @@ TEST(Thermography, TakesFrozenVideoForAClosedShutter) {
 
 TEST(Thermography, KeepsTemperaturesOfSurfacesWhereTheirEmissivityIsKnown) {
   ThermographyConfig settings = config();
-  settings.unit = IntensityUnit::kelvin;
+  settings.unit_choice = UnitChoice::kelvin;
   settings.radiometry = {.emissivity = 0.6, .reflected_K = 290.0, .air_K = 285.0, .absorbed_per_m = 0.01};
   Thermography stage(camera(), settings);
   ThermographyInput input{.time = {}, .T_W_C = pose_at(0.0)};

@@ -46,8 +46,8 @@ constexpr double kIndependent = 300.0;
 
 /// Robust regression of what is seen on what is known, which is the less noisy; its noise is taken out of the spread.
 /// The slope is held near the curve's own where the surfaces differ little among themselves.
-View line_round(std::span<const AnchorPair> pairs, const AnchorCurve& last, double width, double slope_before) {
-  constexpr double kSlopeChange = 0.1;  // share that it may change by from image to image, one sigma
+View line_round(std::span<const AnchorPair> pairs, const AnchorCurve& last, double width, double slope_before,
+                double slope_sigma) {
   double w_sum = 0.0, n = 0.0, d = 0.0, squares = 0.0;
   std::vector<double> weights;
   for (const AnchorPair& pair : pairs) {
@@ -68,7 +68,7 @@ View line_round(std::span<const AnchorPair> pairs, const AnchorCurve& last, doub
   }
   const double noise2 = std::max(1.0, squares / w_sum * slope_before * slope_before);
   const double share = std::min(1.0, kIndependent / w_sum);
-  const double prior = noise2 / std::pow(kSlopeChange * slope_before, 2);
+  const double prior = noise2 / std::pow(slope_sigma * slope_before, 2);
   view.slope = std::clamp((share * nd + prior * slope_before) / (share * std::max(nn, 0.0) + prior), 0.1, 10.0);
   view.offset = (d - view.slope * n) / w_sum;
   return view;
@@ -172,13 +172,16 @@ double lens_left(std::span<const AnchorPair> pairs, const AnchorCurve& curve, do
 
 /// From one curve to one that more agrees with, through all widths.
 AnchorCurve refined(std::span<const AnchorPair> pairs, AnchorCurve curve, const AnchorConfig& config) {
-  const double slope_before = 1.0 / curve.gain;
+  constexpr double kSlopeChange = 0.1;  // share that it may change by from image to image, one sigma
+  const bool nearly_one = config.slope_sigma > 0.0;
+  const double slope_before = nearly_one ? 1.0 : 1.0 / curve.gain,
+               slope_sigma = nearly_one ? config.slope_sigma : kSlopeChange;
   double lens = curve.lens;
   curve.lens = 0.0;
   for (const double times : {4.0, 3.0, 2.0, 1.5, 1.0}) {
     const double width = times * config.loss;
     const std::vector<AnchorPair> flat = without_lens(pairs, lens);
-    View view = line_round(flat, curve, width, slope_before);
+    View view = line_round(flat, curve, width, slope_before, slope_sigma);
     if (config.shape == AnchorConfig::Shape::curve && times < 3.5) bend(flat, curve, width, config.knots, view);
     keep_increasing(view);
     curve = inverse(view);

@@ -43,8 +43,9 @@ struct AnchorConfig {
   Shape shape = Shape::curve;
   double loss =
       12.0;  ///< pairs that differ by more do not count, in the map's unit; narrowed to from four times as much
-  int min_pairs = 150;     ///< inliers, in voxels
-  double min_share = 0.5;  ///< of the pairs that must be inliers
+  double slope_sigma = 0.0;  ///< how far from 1 the slope of a line may be; 0: anywhere, near that of the image before
+  int min_pairs = 150;       ///< inliers, in voxels
+  double min_share = 0.5;    ///< of the pairs that must be inliers
   int knots = 17;
   /// How far the slope of a curve beyond what known surfaces show may be off, one sigma, as a share. A gain control
   /// that equalises bends where it likes; a linear one is only as good as its slope.

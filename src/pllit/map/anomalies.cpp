@@ -19,31 +19,71 @@ double distance_m(const Anomaly& anomaly, const Vector3d& p_W) {
   return ((p_W - anomaly.position_W).cwiseAbs() - 0.5 * anomaly.extent_m).cwiseMax(0.0).norm();
 }
 
+/// Where something is: the centroid of the cells that its points lie in, so that a part that is measured more densely
+/// weighs no more.
+class Place {
+ public:
+  explicit Place(double cell_m) : cell_m_(cell_m) {}
+
+  void add(const Vector3d& p_W) {
+    Cell& cell = cells_[voxel_key(voxel_of(p_W, 1.0 / cell_m_))];
+    cell.sum_W += p_W;
+    cell.points += 1.0;
+  }
+  Vector3d centroid_W() const {
+    Vector3d sum = Vector3d::Zero();
+    for (const auto& [key, cell] : cells_) sum += cell.sum_W / cell.points;
+    return sum / static_cast<double>(cells_.size());
+  }
+  /// Of the centroid, from how the cells scatter.
+  Matrix3d covariance_m2() const {
+    const Vector3d centre_W = centroid_W();
+    const auto n = static_cast<double>(cells_.size());
+    Matrix3d sum = Matrix3d::Zero();
+    for (const auto& [key, cell] : cells_) {
+      const Vector3d d = cell.sum_W / cell.points - centre_W;
+      sum += d * d.transpose();
+    }
+    return sum / (n * n);
+  }
+
+ private:
+  struct Cell {
+    Vector3d sum_W = Vector3d::Zero();
+    double points = 0.0;
+  };
+  double cell_m_;
+  std::map<VoxelKey, Cell> cells_;
+};
+
 /// Sums over the voxels of one anomaly.
 struct Members {
   int all = 0, left = 0, hot = 0, known = 0, new_surfaces = 0, lasting = 0;
   bool seen_hot_now = false;
   double change = 0.0, sigmas = 0.0, peak_change = 0.0, peak_sigmas = 0.0;
-  Vector3d sum_W = Vector3d::Zero();
-  Matrix3d products = Matrix3d::Zero();
-  Eigen::AlignedBox3d box_W;
+  double own_change = 0.0, own_sigmas = 0.0;  ///< of those that are no mere parts
+  Place place;
+  Eigen::AlignedBox3d box_W{};
 
   void add(const WatchedVoxel& watched, Time now, double dwell_s) {
     ++all;
     left += watched.vacated ? 1 : 0;
     if (!watched.hot) return;
     ++hot;
-    known += watched.new_surface ? 0 : 1;
+    known += !watched.new_surface && !watched.joined ? 1 : 0;
     new_surfaces += watched.new_surface && !watched.joined ? 1 : 0;
     lasting += watched.dwell_s() >= dwell_s ? 1 : 0;
     seen_hot_now = seen_hot_now || watched.last == now;
     const double in_sigmas = watched.change / watched.sigma;
     change += watched.change;
     sigmas += in_sigmas;
+    if (!watched.joined) {
+      own_change += watched.change;
+      own_sigmas += in_sigmas;
+    }
     peak_change = std::max(peak_change, static_cast<double>(watched.peak));
     peak_sigmas = std::max(peak_sigmas, static_cast<double>(watched.peak / watched.sigma));
-    sum_W += watched.position_W;
-    products += watched.position_W * watched.position_W.transpose();
+    place.add(watched.position_W);
     box_W.extend(watched.position_W);
   }
 };
@@ -73,10 +113,10 @@ AnomalyState state_of(const Watch& watch, std::uint32_t id) {
   return 2 * judged_hot < judged ? AnomalyState::cooling : AnomalyState::confirmed;
 }
 
-Members members_of(const Watch& watch, std::uint32_t id, Time now, double dwell_s) {
-  Members members;
+Members members_of(const Watch& watch, std::uint32_t id, Time now, const AnomalyConfig& config) {
+  Members members{.place = Place(config.place_cell_m)};
   for (const auto& [key, watched] : watch)
-    if (watched.owner == id) members.add(watched, now, dwell_s);
+    if (watched.owner == id) members.add(watched, now, config.dwell_s);
   return members;
 }
 
@@ -195,13 +235,13 @@ AnomalyDetector::Track& AnomalyDetector::new_track(const Cluster& cluster, const
 void AnomalyDetector::measure(Track& track, const ThermalView& view) {
   constexpr double kViewSpacing_m = 0.25;
   Anomaly& anomaly = track.anomaly;
-  const Members members = members_of(watch_, anomaly.id, view.time, config_.dwell_s);
+  const Members members = members_of(watch_, anomaly.id, view.time, config_);
   if (members.hot == 0 || !members.seen_hot_now) return;
   const double n = members.hot;
   anomaly.kind = members.new_surfaces > members.known ? AnomalyKind::new_hot : AnomalyKind::heated;
-  anomaly.position_W = members.sum_W / n;
-  const Matrix3d scatter = members.products / n - anomaly.position_W * anomaly.position_W.transpose();
-  anomaly.covariance_m2 = scatter / n + config_.registration_m * config_.registration_m * Matrix3d::Identity();
+  anomaly.position_W = members.place.centroid_W();
+  anomaly.covariance_m2 =
+      members.place.covariance_m2() + config_.registration_m * config_.registration_m * Matrix3d::Identity();
   anomaly.extent_m = members.box_W.sizes();
   anomaly.mean_change = members.change / n;
   anomaly.mean_sigmas = members.sigmas / n;
@@ -219,18 +259,18 @@ void AnomalyDetector::measure(Track& track, const ThermalView& view) {
 
 void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map) const {
   constexpr int kStillFrames = 15;  // a rig that stands sees it in all of them, one that passes by in a few
-  constexpr int kFewestSeeds = 2, kMostJoined = 5, kEnoughSeeds = 8;  // few voxels' mistake must not take in a cabinet
+  constexpr int kFewestSeeds = 2, kEnoughSeeds = 8;
   Anomaly& anomaly = track.anomaly;
   if (anomaly.state != AnomalyState::fresh) {
     anomaly.state = state_of(watch_, anomaly.id);
     return;
   }
-  const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
+  const Members members = members_of(watch_, anomaly.id, now, config_);
   const bool stays = members.left <= config_.max_leaving * members.all;
   if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
-  if (members.change < map.model.min_change * members.hot || members.sigmas < config_.min_sigmas * members.hot) return;
   const int seeds = members.known + members.new_surfaces;
-  if (seeds < std::clamp(members.hot / kMostJoined, kFewestSeeds, kEnoughSeeds)) return;
+  if (members.own_change < map.model.min_change * seeds || members.own_sigmas < config_.min_sigmas * seeds) return;
+  if (seeds < std::clamp(members.hot / config_.parts_of_one, kFewestSeeds, kEnoughSeeds)) return;
   if (sure_voxels(watch_, anomaly.id, config_.sure_share * map.model.min_change) < kFewestSeeds) return;
   const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
   const bool watched_long =
@@ -244,7 +284,7 @@ void AnomalyDetector::drop_vanished(Time now) {
   std::erase_if(tracks_, [&](const auto& entry) {
     const Anomaly& anomaly = entry.second.anomaly;
     if (anomaly.state != AnomalyState::fresh) return false;
-    const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
+    const Members members = members_of(watch_, anomaly.id, now, config_);
     if (members.hot > 0 && to_seconds(now - anomaly.last_seen) < config_.forget_fresh_s) return false;
     for (auto& [key, watched] : watch_)
       if (watched.owner == anomaly.id) watched.owner = 0;

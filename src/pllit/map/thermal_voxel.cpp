@@ -14,7 +14,8 @@ void settle(ThermalVoxel& voxel) { voxel.squares /= static_cast<float>(std::max(
 
 /// Welford's recursion until learned, then exponential. An image that is saturated there says but "at least so bright":
 /// nothing where others said more, and what others say soon stands in the place of that.
-void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, const VoxelModelConfig& config) {
+void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, bool drifting,
+           const VoxelModelConfig& config) {
   constexpr float kMostly = 0.5F, kHardly = 0.1F, kBetter = 0.3F;
   const bool saturated = sample.saturated > kMostly;
   if (saturated && voxel.images > 0 && voxel.saturated < kMostly) return;
@@ -36,8 +37,8 @@ void learn(ThermalVoxel& voxel, const VoxelSample& sample, float weight_share, c
     return;
   }
   ++voxel.images;
-  const float weight = weight_share * std::max({least_weight, static_cast<float>(config.adaptation),
-                                                1.0F / static_cast<float>(voxel.images)});
+  const float young = drifting ? 0.0F : 1.0F / static_cast<float>(voxel.images);
+  const float weight = weight_share * std::max({least_weight, static_cast<float>(config.adaptation), young});
   approach(weight);
   voxel.squares = (1.0F - weight) * (voxel.squares + (replaces_bound ? 0.0F : weight * d * d));
 }
@@ -77,7 +78,8 @@ void judge(ThermalVoxel& voxel, const VoxelSample& sample, const VoxelModelConfi
   voxel.normal_at = sample.time;
   // Between the gate and the least change that counts it may be drift: followed, but slowly. So are poor images.
   const float trust = own_sigma * own_sigma / (sigma * sigma);
-  if (voxel.changes == 0) learn(voxel, sample, (std::abs(d) > gate ? 0.25F : 1.0F) * trust, config);
+  const bool drifting = std::abs(d) > gate;
+  if (voxel.changes == 0) learn(voxel, sample, (drifting ? 0.25F : 1.0F) * trust, drifting, config);
 }
 
 /// Of images that say little, nothing.
@@ -120,7 +122,7 @@ ThermalVoxel seen(ThermalVoxel voxel, const VoxelSample& sample, const VoxelMode
   if (voxel.learned(config)) {
     judge(voxel, sample, config);
   } else {
-    learn(voxel, sample, 1.0F, config);
+    learn(voxel, sample, 1.0F, false, config);
     voxel.normal_at = sample.time;
   }
   return voxel;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "pllit/map/hot_parts.hpp"
 #include "pllit/map/new_surfaces.hpp"
 #include "pllit/map/surroundings.hpp"
 
@@ -90,16 +91,6 @@ float change_of_alike(const WatchInput& input, const Watch& watch, const Thermal
   return std::min(most, common_change(std::move(changes)));
 }
 
-void note_heat(WatchedVoxel& watched, const ThermalVoxel& voxel) {
-  const bool is_new = watched.new_surface;
-  watched.change = (is_new ? voxel.present() : voxel.changed_mean) - watched.normal;
-  watched.peak = std::max(watched.peak, watched.change);
-  watched.sure = std::max(watched.sure, is_new ? voxel.sure_change_from(watched.normal) : voxel.sure_change());
-  watched.last = watched.seen = voxel.last_seen;
-  watched.hot = true;
-  ++watched.hits;
-}
-
 /// A voxel with a past that its own model calls hot.
 void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
                    const WatchConfig& config) {
@@ -107,11 +98,12 @@ void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const 
   const VoxelModelConfig& model = input.map.config().model;
   const float change = voxel.changed_mean - voxel.mean, sigma = voxel.sigma(model);
   const float least = std::max(static_cast<float>(model.min_change), static_cast<float>(model.gate_sigmas) * sigma);
-  if (change - change_around(input, watch, key, voxel, config) < least) return;
-  if (change - change_of_alike(input, watch, voxel) < least) return;
+  if (config.bent_curves && change - change_around(input, watch, key, voxel, config) < least) return;
+  if (config.bent_curves && change - change_of_alike(input, watch, voxel) < least) return;
   // What has come into sight since it was last normal may be the same heat, from another side.
   if (explained_by_neighbours(input.map, watch, key, voxel.changed_mean, change, voxel.normal_at, config)) return;
   WatchedVoxel watched{.since = voxel.change_since,
+                       .cool = voxel.normal_at,
                        .hits = voxel.changes - 1,
                        .normal = voxel.mean,
                        .sigma = sigma,
@@ -120,49 +112,36 @@ void take_in_known(Watch& watch, VoxelKey key, const ThermalVoxel& voxel, const 
   watch.emplace(key, watched);
 }
 
-/// A watched voxel next to one, of which it may be a part.
-const WatchedVoxel* hot_neighbour(const Watch& watch, VoxelKey key, float value, const VoxelModelConfig& model) {
-  const WatchedVoxel* part = nullptr;
-  for_neighbours(key, 1, [&](VoxelKey next) {
-    const auto found = part ? watch.end() : watch.find(next);
-    if (found == watch.end() || !found->second.hot) return;
-    const float change = value - found->second.normal;
-    if (change > static_cast<float>(model.min_change) && change > 0.5F * found->second.change) part = &found->second;
-  });
-  return part;
-}
-
-/// A voxel that was not there before: hot by itself, or part of a thing that is.
+/// A voxel that was not there before and is hot by itself.
 void take_in_new(Watch& watch, NewSurfaces& surfaces, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
                  const WatchConfig& config) {
-  const VoxelModelConfig& model = input.map.config().model;
+  const auto normal = cooler_before(input, watch, surfaces, key, voxel, config);
+  if (!normal) return;
   WatchedVoxel watched{.new_surface = true,
                        .since = voxel.first_seen,
+                       .cool = voxel.first_seen,
                        .hits = static_cast<int>(voxel.images) - 1,
+                       .normal = normal->value,
+                       .sigma = normal->sigma,
                        .position_W = input.map.position_W(key, voxel)};
-  const WatchedVoxel* part = nullptr;
-  if (const auto normal = cooler_before(input, watch, surfaces, key, voxel, config)) {
-    watched.normal = normal->value;
-    watched.sigma = normal->sigma;
-  } else if ((part = hot_neighbour(watch, key, voxel.mean, model))) {
-    watched.joined = true;
-    watched.normal = part->normal;
-    watched.sigma = part->sigma;
-  } else {
-    return;
-  }
   note_heat(watched, voxel);
   watch.emplace(key, watched);
 }
 
+bool still_hot(const WatchedVoxel& watched, const ThermalVoxel& voxel, const VoxelModelConfig& model,
+               const WatchConfig& config) {
+  if (watched.new_surface)
+    return voxel.present() - watched.normal > static_cast<float>(model.release_sigmas) * watched.sigma;
+  return voxel.hot || (watched.joined && voxel.last - watched.normal > 0.5F * part_change(model, config));
+}
+
 /// A watched voxel seen again.
-void follow(WatchedVoxel& watched, VoxelKey key, const ThermalVoxel& voxel, const ThermalMap& map) {
-  const VoxelModelConfig& model = map.config().model;
-  watched.position_W = map.position_W(key, voxel);
+void follow(WatchedVoxel& watched, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
+            const WatchConfig& config) {
+  watched.position_W = input.map.position_W(key, voxel);
   watched.seen = voxel.last_seen;
-  const float now = voxel.present();
-  const float release = static_cast<float>(model.release_sigmas) * watched.sigma;
-  const bool hot = watched.new_surface ? now - watched.normal > release : voxel.hot;
+  if (!watched.new_surface && voxel.hot) watched.joined = false;  // by itself now
+  const bool hot = still_hot(watched, voxel, input.map.config().model, config);
   if (hot && !watched.hot) watched.since = voxel.last_seen;  // heated anew
   if (hot)
     note_heat(watched, voxel);
@@ -199,22 +178,27 @@ Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
   const VoxelModelConfig& model = input.map.config().model;
   const float level = level_of(input);
   NewSurfaces surfaces(input, watch, config);
+  std::vector<VoxelKey> fresh;
   for (const VoxelKey key : input.seen) {
     const ThermalVoxel& voxel = *input.map.find(key);
     if (const auto found = watch.find(key); found != watch.end()) {
-      if (!is_away(found->second, input)) follow(found->second, key, voxel, input.map);
-    } else if (voxel.hot) {
-      take_in_known(watch, key, voxel, input, config);
-    } else if (!voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits) &&
-               voxel.mean - level > static_cast<float>(model.min_change)) {
-      take_in_new(watch, surfaces, key, voxel, input, config);
+      if (!is_away(found->second, input)) follow(found->second, key, voxel, input, config);
+      continue;
     }
+    if (voxel.hot)
+      take_in_known(watch, key, voxel, input, config);
+    else if (!voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits) &&
+             voxel.mean - level > static_cast<float>(model.min_change))
+      take_in_new(watch, surfaces, key, voxel, input, config);
+    if (watch.contains(key)) fresh.push_back(key);
   }
+  take_in_parts(watch, std::move(fresh), input, config);
   notice_leaving(watch, input);
   std::erase_if(watch, [&](const auto& entry) {
     const auto& [key, watched] = entry;
     if (!input.map.find(key)) return true;
-    return watched.owner == 0 && (!watched.hot || to_seconds(input.sight.time - watched.last) > config.forget_s);
+    const Time last = std::max(watched.last, watched.taken_in);
+    return watched.owner == 0 && (!watched.hot || to_seconds(input.sight.time - last) > config.forget_s);
   });
   return watch;
 }

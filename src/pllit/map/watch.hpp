@@ -15,16 +15,23 @@ struct WatchConfig {
   double seam_lead_s = 3.0;      ///< ... and so does what was as bright at times, so long before at least
   int surround_voxels = 8;       ///< how far around a surface its surroundings are looked at ...
   double surround_deg = 10.0;    ///< ... and in the image, where little is known around a new one
+  bool bent_curves = true;       ///< images are tied by curves, which may be off for all that is alike or near
+  bool whole_things = false;     ///< what is next to something hot is a part of it if hot by less; see take_in_parts
+  double part_share = 1.0;       ///< of the least change that makes a part ...
+  int part_voxels = 1;           ///< ... so near ...
+  double part_lead_s = 1.0;      ///< ... and known no longer than so before the thing was last seen cool, or came
   double evidence_lead_s = 0.5;  ///< sights so shortly before a surface was first seen do not speak of it
 };
 
 /// A voxel that is or was hot.
 struct WatchedVoxel {
   bool new_surface = false;  ///< against its surroundings; else against its own past
-  bool joined = false;       ///< a surface of no known past next to a hot one, and as hot
+  bool joined = false;       ///< a part of what is hot: next to it, and hot by less, or without a past of its own
   bool hot = false;
   bool vacated = false;     ///< seen through since: the surface has left
   Time since{}, last{};     ///< first and last image of this heat
+  Time cool{};              ///< it was not hot yet
+  Time taken_in{};          ///< of parts: when they became one
   Time seen{};              ///< last image that showed it, hot or not
   int hits = 0;             ///< images that showed it
   int seen_through = 0;     ///< images in a row
@@ -58,7 +65,7 @@ using Watch = std::map<VoxelKey, WatchedVoxel>;
 ///   other), and
 /// - where it is a new surface: when it is hotter than its surroundings, which is what was to be seen through the place
 ///   where it now is, and earlier sights did see through that; what they did not may have been hot for ever, unless it
-///   is part of a watched thing: next to it, and as hot.
+///   is part of a watched thing: see take_in_parts.
 /// It cools when its model says so, and leaves when it is seen through.
 Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config);
 

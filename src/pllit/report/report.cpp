@@ -74,12 +74,31 @@ std::string corrected_text(const Radiometry& radiometry) {
   return text + "; surfaces of another emissivity are off";
 }
 
-std::string caveats(const Anomaly& a, IntensityUnit unit, const Radiometry& radiometry) {
+bool kelvin_from_counts(const ReportContent& content) {
+  return content.unit == IntensityUnit::count && content.counts_per_kelvin > 0.0;
+}
+
+std::string change_text(const Anomaly& a, const ReportContent& content) {
+  std::string text = std::format("{:.1f} {} on average, {:.1f} at its peak ({:.1f} and {:.1f} sigma)", a.mean_change,
+                                 unit_text(content.unit), a.peak_change, a.mean_sigmas, a.peak_sigmas);
+  if (kelvin_from_counts(content))
+    text += std::format("; about {:.1f} and {:.1f} K", a.mean_change / content.counts_per_kelvin,
+                        a.peak_change / content.counts_per_kelvin);
+  return text;
+}
+
+std::string caveats(const Anomaly& a, const ReportContent& content) {
+  const IntensityUnit unit = content.unit;
   std::vector<std::string> said;
   if (unit == IntensityUnit::grey)
     said.emplace_back("from video after gain control: a change is certain in sign, not in kelvin");
-  if (unit == IntensityUnit::count) said.emplace_back("raw counts without calibration: no temperature");
-  if (unit == IntensityUnit::kelvin) said.push_back(corrected_text(radiometry));
+  if (kelvin_from_counts(content))
+    said.push_back(std::format(
+        "raw counts: differences in kelvin by the calibration given ({:.1f} counts a kelvin), no temperature",
+        content.counts_per_kelvin));
+  else if (unit == IntensityUnit::count)
+    said.emplace_back("raw counts without calibration: no temperature");
+  if (unit == IntensityUnit::kelvin) said.push_back(corrected_text(content.radiometry));
   if (a.views < 3) said.emplace_back("seen from few viewpoints: may be a reflection");
   if (a.voxels < 9) said.emplace_back("small: detected, its peak not measured");
   if (a.kind == AnomalyKind::new_hot) said.emplace_back("was not there before: judged by what stands around it");
@@ -89,7 +108,6 @@ std::string caveats(const Anomaly& a, IntensityUnit unit, const Radiometry& radi
 }
 
 std::string card(const Anomaly& a, const ReportContent& content) {
-  const std::string unit = unit_text(content.unit);
   const double sigma_m = std::sqrt(a.covariance_m2.trace() / 3.0);
   std::string html =
       std::format("<section class=\"card\"><h3>Finding {}: {} ({})</h3>\n", a.id,
@@ -101,8 +119,7 @@ std::string card(const Anomaly& a, const ReportContent& content) {
                                    a.position_W.y(), a.position_W.z(), sigma_m));
   html += row("size", std::format("{:.2f} &times; {:.2f} &times; {:.2f} m, {} voxels", a.extent_m.x(), a.extent_m.y(),
                                   a.extent_m.z(), a.voxels));
-  html += row("above normal", std::format("{:.1f} {} on average, {:.1f} at its peak ({:.1f} and {:.1f} sigma)",
-                                          a.mean_change, unit, a.peak_change, a.mean_sigmas, a.peak_sigmas));
+  html += row("above normal", change_text(a, content));
   if (const auto severity = severity_of(a, content.unit, content.severity))
     html += row("class", std::format("{}: {} ({})", escaped(severity->name), escaped(severity->action),
                                      escaped(content.severity.scheme)));
@@ -110,7 +127,7 @@ std::string card(const Anomaly& a, const ReportContent& content) {
   html += row("last seen", utc_text(to_seconds(a.last_seen)));
   html +=
       row("evidence", std::format("{} images from {} viewpoints, confidence {:.2f}", a.frames, a.views, a.confidence));
-  html += row("caveats", escaped(caveats(a, content.unit, content.radiometry)));
+  html += row("caveats", escaped(caveats(a, content)));
   html +=
       "</table></div>\n<p class=\"muted\">Decision: <span class=\"sign\"></span> Reviewed by: <span class=\"sign\">"
       "</span></p></section>\n";

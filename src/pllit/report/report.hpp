@@ -24,9 +24,10 @@ struct DoubtfulStretch {
 struct ReportContent {
   std::string title;
   IntensityUnit unit = IntensityUnit::grey;
-  Radiometry radiometry{};  ///< what temperatures were corrected for
-  double voxel_m = 0.05;    ///< of the thermographic map
-  int known_after = 12;     ///< images of a surface before it is known what is normal there
+  double counts_per_kelvin = 0.0;  ///< of raw counts, as the user knows them; 0: no kelvin are claimed
+  Radiometry radiometry{};         ///< what temperatures were corrected for
+  double voxel_m = 0.05;           ///< of the thermographic map
+  int known_after = 12;            ///< images of a surface before it is known what is normal there
   bool has_images = false;
   Trajectory trajectory{};
   PointTable map{};          ///< of the LiDAR

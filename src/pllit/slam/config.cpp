@@ -48,11 +48,10 @@ Expected<void> check(const Config& config) {
         "rig.camera.intrinsics_px: the centre ({}, {}) lies outside the {}x{} image; the order is [fx, fy, cx, cy]", cx,
         cy, width, height));
   const ThermographyConfig& heat = config.thermography;
-  if (heat.unit != IntensityUnit::kelvin && heat.radiometry.corrects())
-    return input_error(std::format(
-        "advanced.radiometry corrects temperatures, but advanced.anomalies.unit is {}; set emissivity to 1 and "
-        "absorbed_per_m to 0, or the unit to kelvin where the camera is radiometric",
-        name_of(heat.unit)));
+  if (heat.unit_choice != UnitChoice::kelvin && heat.radiometry.corrects())
+    return input_error(
+        "advanced.radiometry corrects temperatures, but advanced.anomalies.unit is not kelvin; set emissivity to 1 and "
+        "absorbed_per_m to 0, or the unit to kelvin where the camera is radiometric");
   return {};
 }
 

@@ -84,7 +84,7 @@ struct Config {
   DriftConfig drift;
   HealthConfig health;
   VisionConfig vision;
-  ThermographyConfig thermography;
+  ThermographyConfig thermography = open_thresholds();
   LoopConfig loop;
   ReportConfig report;
 };

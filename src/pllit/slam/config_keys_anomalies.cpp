@@ -5,14 +5,18 @@ namespace pllit {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kUnits{"grey", "count", "kelvin"};
-constexpr std::array<std::string_view, 3> kShapes{"bias", "affine", "curve"};
+constexpr std::array<std::string_view, 4> kUnits{"auto", "grey", "count", "kelvin"};
+constexpr std::array<std::string_view, 4> kShapes{"auto", "bias", "affine", "curve"};
 
 }  // namespace
 
 void list_anomalies(Section section, ThermographyConfig& config) {
-  section.choose(PLLIT_KEY(unit), kUnits,
-                 "What the images count: grey after gain control, raw counts, or counts of a radiometric camera.");
+  section.choose(
+      "unit", config.unit_choice, kUnits,
+      "What images hold: grey (gain control), raw count, kelvin (radiometric); auto: 8 bits grey, 16 count.");
+  section.add(PLLIT_KEY(counts_per_kelvin),
+              "Of raw counts, from a calibration of your own: differences are then told in kelvin too; 0: not known.",
+              "1/K", {0.0, 1e5});
   section.add(PLLIT_KEY(kelvin_per_count), "Of a radiometric camera.", "K", {1e-4, 10.0});
   section.add(PLLIT_KEY(kelvin_at_zero), "Of a radiometric camera: temperature of count zero.", "K", {-1000.0, 1000.0});
   section.add("max_range_m", config.sampling.max_range_m, "Surfaces farther from the camera are not watched.", "m",
@@ -26,25 +30,30 @@ void list_anomalies(Section section, ThermographyConfig& config) {
   section.add("memory_mb", config.map.memory_mb,
               "Most memory it may take; beyond it what was not seen for longest goes.", "MB", {4.0, 1048576.0});
   VoxelModelConfig& model = config.map.model;
-  section.add("noise", model.noise, "Least standard deviation of a voxel, in the unit of the images.", "", {1e-3, 1e4});
-  section.add("learned_after", model.learned_after, "Images before a voxel's normal intensity is known.", "",
-              {2.0, 1000.0});
+  section.add("noise", model.noise,
+              "Least standard deviation of a voxel, in the unit of the images; 0: 6 greys or 0.3 K.", "", {0.0, 1e4});
+  section.add("learned_after", model.learned_after,
+              "Images before a voxel's normal intensity is known; 0: 12 of greys, 6 of others.", "", {0.0, 1000.0});
   section.add("learned_views", model.learned_views, "And from so many viewpoints, unless the rig stands.", "",
               {1.0, 100.0});
+  section.add("adaptation", model.adaptation,
+              "Weight of each later image: what is normal follows slow changes; 0: 0.02 of greys, 0.005 of others.", "",
+              {0.0, 1.0});
   section.add("gate_sigmas", model.gate_sigmas, "A greater change is not normal, in standard deviations.", "",
               {1.0, 20.0});
-  section.add("min_change", model.min_change, "A smaller change is never hot, in the unit of the images.", "",
-              {1e-3, 1e4});
+  section.add("min_change", model.min_change,
+              "A smaller change is never hot, in the unit of the images; 0: 30 greys or 3 K.", "", {0.0, 1e4});
   section.add("release_sigmas", model.release_sigmas, "What is hot stays so until it is within this.", "", {0.1, 20.0});
   section.add("hits", model.hits, "Images that must have shown a change.", "", {1.0, 100.0});
   section.add(PLLIT_KEY(saturated_grey), "From here on, greys of 8-bit video say \"at least\".", "grey", {1.0, 255.0});
-  section.choose("anchor", config.anchor.shape, kShapes,
-                 "How images are tied to the map: a shift, a line, or a curve (gain control by histograms).");
+  section.choose("anchor", config.anchor_choice, kShapes,
+                 "How images are tied to the map; auto: temperatures by a shift, counts by a line, greys by a curve.");
   section.add("anchor_loss", config.anchor.loss,
-              "Surfaces whose intensity differs by more do not tie images to the map, in the unit of the images.", "",
-              {1e-3, 1e4});
+              "Surfaces that differ by more do not tie images to the map, in the images' unit; 0: 12 greys or 1.5 K.",
+              "", {0.0, 1e4});
   section.add("seam_voxels", config.anomalies.watch.seam_voxels,
-              "So near, heat that has always been there explains a change.", "", {0.0, 10.0});
+              "So near, heat that has always been there explains a change; -1: 2 of greys, 0 of others.", "",
+              {-1.0, 10.0});
   section.add("min_voxels", config.anomalies.min_voxels, "Smaller clusters of hot voxels are noise.", "",
               {1.0, 10000.0});
   section.add("dwell_s", config.anomalies.dwell_s, "How long they must have been hot before the alarm.", "s",

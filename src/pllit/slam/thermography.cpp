@@ -72,6 +72,11 @@ Thermography::Thermography(const Camera& camera, const ThermographyConfig& confi
 ThermographyFrame Thermography::process(const ThermographyInput& input) {
   assert(input.raw.cols == camera_.width && input.raw.rows == camera_.height);
   using Use = ThermographyFrame::Use;
+  if (!depth_) {
+    *this = Thermography(camera_, by_unit(config_, unit_of(config_, input.raw.depth() == CV_8U)));
+    depth_ = input.raw.depth();
+  }
+  if (input.raw.depth() != depth_) return {.use = Use::other_depth};
   ThermographyFrame frame;
   if (input.trusted) remember_scan(input);
   if (shutter_closed(input)) return {.use = Use::frozen};

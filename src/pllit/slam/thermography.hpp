@@ -30,11 +30,12 @@ std::optional<ThermographyInput> thermography_input(const FrameEstimate& frame, 
 /// What an image came to.
 struct ThermographyFrame {
   enum class Use {
-    mapped,      ///< learned from and searched
-    learned,     ///< learned from, but not tied to the map, so not searched
-    untrusted,   ///< not used: localisation was degraded
-    frozen,      ///< not used: the shutter was closed, or has just opened
-    contradicts  ///< not used: its greys do not fit to the map's by any curve
+    mapped,       ///< learned from and searched
+    learned,      ///< learned from, but not tied to the map, so not searched
+    untrusted,    ///< not used: localisation was degraded
+    frozen,       ///< not used: the shutter was closed, or has just opened
+    contradicts,  ///< not used: its greys do not fit to the map's by any curve
+    other_depth   ///< not used: other bits a pixel than the first one, so of another stream
   };
   Use use = Use::mapped;
   AnchorFit anchor{};
@@ -44,6 +45,7 @@ struct ThermographyFrame {
 
 class Thermography {
  public:
+  /// The first image tells the unit, where the configuration leaves it open, and with it what suits it (by_unit).
   Thermography(const Camera& camera, const ThermographyConfig& config);
 
   /// Takes the next image; times ascend.
@@ -57,6 +59,7 @@ class Thermography {
   /// Of each anomaly the part of an image in which it is largest (Anomaly::crop), as the camera gave it.
   const std::map<std::uint32_t, cv::Mat>& crops() const { return crops_; }
   std::size_t watched() const { return detector_.watch().size(); }
+  /// As the first image has settled it.
   const ThermographyConfig& config() const { return config_; }
 
  private:
@@ -80,6 +83,7 @@ class Thermography {
   cv::Mat last_raw_;
   std::optional<std::pair<Time, SE3>> last_pose_;  // T_W_C
   std::map<std::uint32_t, cv::Mat> crops_;
+  std::optional<int> depth_;     ///< of the images, as OpenCV counts it; none before the first
   std::optional<Time> shutter_;  ///< last image that was frozen
 };
 

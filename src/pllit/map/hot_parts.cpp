@@ -1,0 +1,99 @@
+#include "pllit/map/hot_parts.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "pllit/geometry/voxel_neighbours.hpp"
+
+namespace pllit {
+namespace {
+
+/// What a watched voxel shows now.
+float intensity_of(const WatchedVoxel& watched, const ThermalVoxel& voxel) {
+  if (watched.new_surface) return voxel.present();
+  return watched.joined ? voxel.last : voxel.changed_mean;
+}
+
+/// Whether a voxel has no cool past beside a hot one: it came into sight with that or later.
+bool came_with(const ThermalVoxel& voxel, const WatchedVoxel& hot, const VoxelModelConfig& model,
+               const WatchConfig& config) {
+  if (config.whole_things) return voxel.first_seen >= hot.cool - from_seconds(config.part_lead_s);
+  return !voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits);
+}
+
+/// A voxel as a part of a hot one next to it, if it is one.
+std::optional<WatchedVoxel> part_of(const WatchedVoxel& hot, VoxelKey key, const ThermalVoxel& voxel,
+                                    const ThermalMap& map, const WatchConfig& config) {
+  const VoxelModelConfig& model = map.config().model;
+  const float least = std::max(part_change(model, config), 0.5F * hot.change);
+  WatchedVoxel part{.joined = true, .cool = hot.cool, .position_W = map.position_W(key, voxel)};
+  part.hits = std::max(static_cast<int>(voxel.images), model.hits) - 1;
+  if (config.whole_things && voxel.learned(model)) {
+    const float sigma = voxel.sigma(model);
+    const bool still = voxel.last_seen >= hot.since - from_seconds(config.part_lead_s);
+    if (still && voxel.last - voxel.mean > std::max(least, static_cast<float>(model.gate_sigmas) * sigma)) {
+      part.since = voxel.last_seen;
+      part.normal = voxel.mean;
+      part.sigma = sigma;
+      return part;
+    }
+  }
+  if (voxel.mean - hot.normal < least || !came_with(voxel, hot, model, config)) return std::nullopt;
+  part.new_surface = true;
+  part.since = voxel.first_seen;
+  part.normal = hot.normal;
+  part.sigma = hot.sigma;
+  return part;
+}
+
+bool take_in(Watch& watch, const WatchedVoxel& hot, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
+             const WatchConfig& config) {
+  auto part = part_of(hot, key, voxel, input.map, config);
+  if (!part) return false;
+  part->taken_in = input.sight.time;
+  note_heat(*part, voxel);
+  watch.emplace(key, *part);
+  return true;
+}
+
+bool take_in_beside_hot(Watch& watch, VoxelKey key, const WatchInput& input, const WatchConfig& config) {
+  const ThermalVoxel& voxel = *input.map.find(key);
+  bool taken = false;
+  for_neighbours(key, config.part_voxels, [&](VoxelKey next) {
+    const auto found = taken ? watch.end() : watch.find(next);
+    if (found == watch.end() || !found->second.hot) return;
+    const WatchedVoxel hot = found->second;
+    taken = take_in(watch, hot, key, voxel, input, config);
+  });
+  return taken;
+}
+
+}  // namespace
+
+void note_heat(WatchedVoxel& watched, const ThermalVoxel& voxel) {
+  watched.change = intensity_of(watched, voxel) - watched.normal;
+  watched.peak = std::max(watched.peak, watched.change);
+  watched.sure =
+      std::max(watched.sure, watched.new_surface ? voxel.sure_change_from(watched.normal) : voxel.sure_change());
+  watched.last = watched.seen = voxel.last_seen;
+  watched.hot = true;
+  ++watched.hits;
+}
+
+void take_in_parts(Watch& watch, std::vector<VoxelKey> fresh, const WatchInput& input, const WatchConfig& config) {
+  if (watch.empty()) return;
+  for (const VoxelKey key : input.seen)
+    if (!watch.contains(key) && take_in_beside_hot(watch, key, input, config)) fresh.push_back(key);
+  if (!config.whole_things) return;
+  while (!fresh.empty()) {
+    const VoxelKey key = fresh.back();
+    fresh.pop_back();
+    const WatchedVoxel hot = watch.at(key);
+    for_neighbours(key, config.part_voxels, [&](VoxelKey next) {
+      const ThermalVoxel* voxel = watch.contains(next) ? nullptr : input.map.find(next);
+      if (voxel && voxel->images > 0 && take_in(watch, hot, next, *voxel, input, config)) fresh.push_back(next);
+    });
+  }
+}
+
+}  // namespace pllit
