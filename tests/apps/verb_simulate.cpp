@@ -20,11 +20,14 @@ TEST_F(Simulate, WritesABagThatDoctorAndRunAccept) {
     EXPECT_TRUE(std::filesystem::exists(path(beside))) << beside;
   EXPECT_EQ(nlohmann::json::parse(read(path("room.scene.json")))["rig"], "inspection");
 
-  const auto doctor = run({"doctor", path("room.bag"), "--config", "inspection"});
+  const std::string counts = "input.image_topic=/thermal/image_raw";
+  EXPECT_THAT(run({"run", path("room.bag"), "--config", "inspection", "--out", path("none")}).err,
+              HasSubstr("2 topics could be the image"));
+  const auto doctor = run({"doctor", path("room.bag"), "--config", "inspection", "--set", counts});
   EXPECT_EQ(doctor.exit_code, 0) << doctor.err;
   EXPECT_THAT(doctor.out, HasSubstr("/thermal/image_agc"));
-  const std::vector<std::string> drawing{"doctor",     path("room.bag"), "--config",
-                                         "inspection", "--overlay",      path("o.png")};
+  const std::vector<std::string> drawing{"doctor",    path("room.bag"), "--config", "inspection",
+                                         "--overlay", path("o.png"),    "--set",    counts};
   EXPECT_THAT(run(drawing).out, HasSubstr("the LiDAR over"));
   EXPECT_TRUE(read(path("o.png")).starts_with("\x89PNG"));
   EXPECT_EQ(run(drawing).exit_code, 2) << "there is a picture already";
@@ -33,8 +36,8 @@ TEST_F(Simulate, WritesABagThatDoctorAndRunAccept) {
   EXPECT_EQ(blind.exit_code, 2);
   EXPECT_THAT(blind.err + blind.out, HasSubstr("rig.camera"));
 
-  const auto session = run({"run", path("room.bag"), "--config", "inspection", "--truth", path("room.tum"), "--out",
-                            path("session"), "--json"});
+  const auto session = run({"run", path("room.bag"), "--config", "inspection", "--set", counts, "--truth",
+                            path("room.tum"), "--out", path("session"), "--json"});
   ASSERT_EQ(session.exit_code, 0) << session.err;
   EXPECT_LT(nlohmann::json::parse(session.out)["ape"]["rmse"].get<double>(), 0.05);
 }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <optional>
+
 namespace pllit {
 namespace {
 
@@ -15,7 +18,7 @@ struct Reading {
 /// Whether the strip is watched after a camera has walked by for nine seconds: ten images a second, each with what
 /// `shown` says of it; none where that is empty.
 template <class Shown>
-bool is_watched(const Shown& shown) {
+bool is_watched(const Shown& shown, const Vector3d& place_W = strip_W, const WatchConfig& config = {}) {
   ThermalMap map({});
   const SightLog past({});
   Watch watch;
@@ -28,9 +31,9 @@ bool is_watched(const Shown& shown) {
       view.observations.push_back({.p_W = p_W, .pixel_px = {0.0F, 0.0F}, .intensity = grey, .raw = grey});
     const auto seen = map.integrate(view);
     const Sight sight = sight_of(time, view.viewpoint_W, {}, past.config());
-    watch = watched(std::move(watch), {.map = map, .seen = seen, .sight = sight, .past = past}, {});
+    watch = watched(std::move(watch), {.map = map, .seen = seen, .sight = sight, .past = past}, config);
   }
-  return watch.contains(map.key_at(strip_W));
+  return watch.contains(map.key_at(place_W));
 }
 
 /// The strip shows 100, and 200 from the sixth second on; what is next to it shows one value in six of eight images and
@@ -49,6 +52,43 @@ TEST(Watch, LeavesAloneWhatHasAlwaysBeenNextToIt) { EXPECT_FALSE(is_watched_besi
 TEST(Watch, LeavesAloneWhatASeamNextToItShowedAtTimes) { EXPECT_FALSE(is_watched_beside(100.0F, 180.0F)); }
 
 TEST(Watch, IsNotBlindedByASeamOfLittleContrast) { EXPECT_TRUE(is_watched_beside(100.0F, 130.0F)); }
+
+/// The same strip; the voxel next to it is seen in some images only.
+bool is_part(bool whole_things, const std::function<std::optional<float>(int image)>& next, float hot = 200.0F) {
+  const WatchConfig config{.seam_voxels = 0, .bent_curves = false, .whole_things = whole_things, .part_share = 0.5};
+  return is_watched(
+      [&](int image) {
+        std::vector<Reading> readings{{strip_W, image < 60 ? 100.0F : hot}};
+        if (const auto grey = next(image)) readings.push_back({next_W, *grey});
+        return readings;
+      },
+      next_W, config);
+}
+
+TEST(Watch, TakesInWhatHangsTogetherWithHeatAndCameIntoSightSince) {
+  const auto later = [](int image) { return image == 75 ? std::optional(190.0F) : std::nullopt; };
+  EXPECT_TRUE(is_part(true, later)) << "one image of it";
+  EXPECT_FALSE(is_part(false, later)) << "not where greys are all there is";
+}
+
+TEST(Watch, TakesInWhatWasSeenBeforeTheHeatNextToItWasSure) {
+  EXPECT_TRUE(is_part(true, [](int image) { return image == 60 ? std::optional(190.0F) : std::nullopt; }));
+}
+
+TEST(Watch, TakesInNoPartThatHasAlwaysBeenHotNextToIt) {
+  EXPECT_FALSE(is_part(true, [](int) { return std::optional(190.0F); }));
+}
+
+TEST(Watch, TakesInNoPartThatIsHardlyWarm) {
+  EXPECT_FALSE(is_part(true, [](int image) { return std::optional(image < 60 ? 100.0F : 110.0F); }));
+}
+
+TEST(Watch, TakesInAPartThatIsHotByLessThanCountsAlone) {
+  const auto next = [](int image) { return std::optional(image < 60 ? 100.0F : 128.0F); };
+  EXPECT_TRUE(is_part(true, next, 150.0F));
+  EXPECT_FALSE(is_part(false, next, 150.0F));
+  EXPECT_FALSE(is_part(true, next, 200.0F)) << "less than half as hot as what it is next to";
+}
 
 /// A wall of which all shows 100, and `later` from the sixth second on, but for the strip, which shows 140 then.
 bool is_watched_on_a_wall(float later) {

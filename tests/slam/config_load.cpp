@@ -132,8 +132,9 @@ TEST(ConfigLoading, ChecksWhatSpansSeveralKeys) {
   EXPECT_THAT(load_error("rig: {camera: {size_px: [640, 512]}}"), HasSubstr("focal lengths 0 and 0 are not positive"));
   EXPECT_THAT(load_error("rig: {camera: {size_px: [640, 512], intrinsics_px: [500, 320, 900, 256]}}"),
               HasSubstr("lies outside the 640x512 image"));
-  EXPECT_THAT(load_error("advanced: {radiometry: {emissivity: 0.9}}"),
-              HasSubstr("my.yaml: advanced.radiometry corrects temperatures, but advanced.anomalies.unit is grey"));
+  EXPECT_THAT(
+      load_error("advanced: {radiometry: {emissivity: 0.9}}"),
+      HasSubstr("my.yaml: advanced.radiometry corrects temperatures, but advanced.anomalies.unit is not kelvin"));
 }
 
 TEST(ConfigLoading, NamesTheLineOfBrokenYaml) {

@@ -259,7 +259,7 @@ void AnomalyDetector::measure(Track& track, const ThermalView& view) {
 
 void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map) const {
   constexpr int kStillFrames = 15;  // a rig that stands sees it in all of them, one that passes by in a few
-  constexpr int kFewestSeeds = 2, kEnoughSeeds = 8;
+  constexpr int kFewestSeeds = 2;
   Anomaly& anomaly = track.anomaly;
   if (anomaly.state != AnomalyState::fresh) {
     anomaly.state = state_of(watch_, anomaly.id);
@@ -270,7 +270,7 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
   if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
   const int seeds = members.known + members.new_surfaces;
   if (members.own_change < map.model.min_change * seeds || members.own_sigmas < config_.min_sigmas * seeds) return;
-  if (seeds < std::clamp(members.hot / config_.parts_of_one, kFewestSeeds, kEnoughSeeds)) return;
+  if (seeds < std::clamp(members.hot / config_.parts_of_one, kFewestSeeds, config_.enough_seeds)) return;
   if (sure_voxels(watch_, anomaly.id, config_.sure_share * map.model.min_change) < kFewestSeeds) return;
   const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
   const bool watched_long =

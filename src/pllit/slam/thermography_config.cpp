@@ -1,6 +1,7 @@
 #include "pllit/slam/thermography_config.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace pllit {
 namespace {
@@ -79,6 +80,7 @@ ThermographyConfig by_unit(ThermographyConfig config, IntensityUnit unit) {
     watch.part_share = 0.5;
     watch.part_voxels = 2;
     config.anomalies.parts_of_one = 15;
+    config.anomalies.enough_seeds = std::numeric_limits<int>::max();
   }
   return config;
 }
