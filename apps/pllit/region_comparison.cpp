@@ -90,10 +90,6 @@ Expected<RegionComparison> RegionComparison::open(const fs::path& regions, const
 Expected<Json> RegionComparison::look(const Session& session, const PointTable& heat_W, const VisitDrift& drift) {
   const auto facts = session_facts(session);
   if (!facts) return std::unexpected(facts.error());
-  if (facts->unit != baseline_.unit)
-    return input_error(std::format("'{}' is in {}, but the baseline '{}' in {}: their regions cannot be compared",
-                                   session.folder.string(), name_of(facts->unit), baseline_.identity.session,
-                                   name_of(baseline_.unit)));
   if (!corrected_alike(facts->radiometry, baseline_.radiometry))
     spdlog::warn("'{}' was run with another advanced.radiometry than the baseline; run it again with the baseline's",
                  session.folder.string());

@@ -44,13 +44,16 @@ TEST(ThermographyConfig, MeasuresCountsInTheUsersKelvin) {
 
 TEST(ThermographyConfig, LeavesWhatTheUserChose) {
   auto config = load_config(
-      "advanced: {anomalies: {unit: count, min_change: 45, anchor: bias, seam_voxels: 1, learned_after: 9}}", "a.yaml");
+      "advanced: {anomalies: {unit: count, min_change: 45, anchor: bias, seam_voxels: 1, learned_after: 9, "
+      "learned_views: 3}}",
+      "a.yaml");
   ASSERT_TRUE(config) << config.error().message;
   const ThermographyConfig chosen = by_unit(config->thermography, unit_of(config->thermography, true));
   EXPECT_EQ(chosen.map.model.min_change, 45.0);
   EXPECT_EQ(chosen.anchor.shape, AnchorConfig::Shape::bias);
   EXPECT_EQ(chosen.anomalies.watch.seam_voxels, 1);
   EXPECT_EQ(chosen.map.model.learned_after, 9);
+  EXPECT_EQ(chosen.map.model.learned_views, 3);
   EXPECT_NEAR(chosen.map.model.noise, 9.0, 1e-9) << "the others suit the unit";
 }
 

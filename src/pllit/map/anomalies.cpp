@@ -6,6 +6,7 @@
 #include <set>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
+#include "pllit/map/even_centroid.hpp"
 
 namespace pllit {
 namespace {
@@ -19,51 +20,13 @@ double distance_m(const Anomaly& anomaly, const Vector3d& p_W) {
   return ((p_W - anomaly.position_W).cwiseAbs() - 0.5 * anomaly.extent_m).cwiseMax(0.0).norm();
 }
 
-/// Where something is: the centroid of the cells that its points lie in, so that a part that is measured more densely
-/// weighs no more.
-class Place {
- public:
-  explicit Place(double cell_m) : cell_m_(cell_m) {}
-
-  void add(const Vector3d& p_W) {
-    Cell& cell = cells_[voxel_key(voxel_of(p_W, 1.0 / cell_m_))];
-    cell.sum_W += p_W;
-    cell.points += 1.0;
-  }
-  Vector3d centroid_W() const {
-    Vector3d sum = Vector3d::Zero();
-    for (const auto& [key, cell] : cells_) sum += cell.sum_W / cell.points;
-    return sum / static_cast<double>(cells_.size());
-  }
-  /// Of the centroid, from how the cells scatter.
-  Matrix3d covariance_m2() const {
-    const Vector3d centre_W = centroid_W();
-    const auto n = static_cast<double>(cells_.size());
-    Matrix3d sum = Matrix3d::Zero();
-    for (const auto& [key, cell] : cells_) {
-      const Vector3d d = cell.sum_W / cell.points - centre_W;
-      sum += d * d.transpose();
-    }
-    return sum / (n * n);
-  }
-
- private:
-  struct Cell {
-    Vector3d sum_W = Vector3d::Zero();
-    double points = 0.0;
-  };
-  double cell_m_;
-  std::map<VoxelKey, Cell> cells_;
-};
-
 /// Sums over the voxels of one anomaly.
 struct Members {
   int all = 0, left = 0, hot = 0, known = 0, new_surfaces = 0, lasting = 0;
   bool seen_hot_now = false;
   double change = 0.0, sigmas = 0.0, peak_change = 0.0, peak_sigmas = 0.0;
   double own_change = 0.0, own_sigmas = 0.0;  ///< of those that are no mere parts
-  Place place;
-  Eigen::AlignedBox3d box_W{};
+  Eigen::AlignedBox3d box_W;
 
   void add(const WatchedVoxel& watched, Time now, double dwell_s) {
     ++all;
@@ -83,7 +46,6 @@ struct Members {
     }
     peak_change = std::max(peak_change, static_cast<double>(watched.peak));
     peak_sigmas = std::max(peak_sigmas, static_cast<double>(watched.peak / watched.sigma));
-    place.add(watched.position_W);
     box_W.extend(watched.position_W);
   }
 };
@@ -113,11 +75,19 @@ AnomalyState state_of(const Watch& watch, std::uint32_t id) {
   return 2 * judged_hot < judged ? AnomalyState::cooling : AnomalyState::confirmed;
 }
 
-Members members_of(const Watch& watch, std::uint32_t id, Time now, const AnomalyConfig& config) {
-  Members members{.place = Place(config.place_cell_m)};
+Members members_of(const Watch& watch, std::uint32_t id, Time now, double dwell_s) {
+  Members members;
   for (const auto& [key, watched] : watch)
-    if (watched.owner == id) members.add(watched, now, config.dwell_s);
+    if (watched.owner == id) members.add(watched, now, dwell_s);
   return members;
+}
+
+/// Where the hot voxels of an anomaly are.
+EvenCentroid place_of(const Watch& watch, std::uint32_t id, double cell_m) {
+  EvenCentroid place(cell_m);
+  for (const auto& [key, watched] : watch)
+    if (watched.owner == id && watched.hot) place.add(watched.position_W);
+  return place;
 }
 
 /// Voxels of which so much of the change is left however they lie to the edges of the image.
@@ -235,13 +205,14 @@ AnomalyDetector::Track& AnomalyDetector::new_track(const Cluster& cluster, const
 void AnomalyDetector::measure(Track& track, const ThermalView& view) {
   constexpr double kViewSpacing_m = 0.25;
   Anomaly& anomaly = track.anomaly;
-  const Members members = members_of(watch_, anomaly.id, view.time, config_);
+  const Members members = members_of(watch_, anomaly.id, view.time, config_.dwell_s);
   if (members.hot == 0 || !members.seen_hot_now) return;
   const double n = members.hot;
   anomaly.kind = members.new_surfaces > members.known ? AnomalyKind::new_hot : AnomalyKind::heated;
-  anomaly.position_W = members.place.centroid_W();
+  const EvenCentroid place = place_of(watch_, anomaly.id, config_.place_cell_m);
+  anomaly.position_W = place.centroid_W();
   anomaly.covariance_m2 =
-      members.place.covariance_m2() + config_.registration_m * config_.registration_m * Matrix3d::Identity();
+      place.covariance_m2() + config_.registration_m * config_.registration_m * Matrix3d::Identity();
   anomaly.extent_m = members.box_W.sizes();
   anomaly.mean_change = members.change / n;
   anomaly.mean_sigmas = members.sigmas / n;
@@ -265,7 +236,7 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
     anomaly.state = state_of(watch_, anomaly.id);
     return;
   }
-  const Members members = members_of(watch_, anomaly.id, now, config_);
+  const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
   const bool stays = members.left <= config_.max_leaving * members.all;
   if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
   const int seeds = members.known + members.new_surfaces;
@@ -284,7 +255,7 @@ void AnomalyDetector::drop_vanished(Time now) {
   std::erase_if(tracks_, [&](const auto& entry) {
     const Anomaly& anomaly = entry.second.anomaly;
     if (anomaly.state != AnomalyState::fresh) return false;
-    const Members members = members_of(watch_, anomaly.id, now, config_);
+    const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
     if (members.hot > 0 && to_seconds(now - anomaly.last_seen) < config_.forget_fresh_s) return false;
     for (auto& [key, watched] : watch_)
       if (watched.owner == anomaly.id) watched.owner = 0;

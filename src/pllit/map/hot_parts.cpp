@@ -1,6 +1,7 @@
 #include "pllit/map/hot_parts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
@@ -56,6 +57,19 @@ bool take_in(Watch& watch, const WatchedVoxel& hot, VoxelKey key, const ThermalV
   return true;
 }
 
+/// The lowest normal of what is hot now.
+float coolest_normal(const Watch& watch) {
+  float coolest = std::numeric_limits<float>::infinity();
+  for (const auto& [key, watched] : watch)
+    if (watched.hot) coolest = std::min(coolest, watched.normal);
+  return coolest;
+}
+
+/// A quick look before neighbours are searched for: whether it could be a part of anything.
+bool may_be_part(const ThermalVoxel& voxel, float coolest, float least, const WatchConfig& config) {
+  return voxel.mean - coolest >= least || (config.whole_things && voxel.last - voxel.mean > least);
+}
+
 bool take_in_beside_hot(Watch& watch, VoxelKey key, const WatchInput& input, const WatchConfig& config) {
   const ThermalVoxel& voxel = *input.map.find(key);
   bool taken = false;
@@ -82,8 +96,14 @@ void note_heat(WatchedVoxel& watched, const ThermalVoxel& voxel) {
 
 void take_in_parts(Watch& watch, std::vector<VoxelKey> fresh, const WatchInput& input, const WatchConfig& config) {
   if (watch.empty()) return;
-  for (const VoxelKey key : input.seen)
-    if (!watch.contains(key) && take_in_beside_hot(watch, key, input, config)) fresh.push_back(key);
+  const float least = part_change(input.map.config().model, config);
+  float coolest = coolest_normal(watch);
+  for (const VoxelKey key : input.seen) {
+    if (!may_be_part(*input.map.find(key), coolest, least, config) || watch.contains(key)) continue;
+    if (!take_in_beside_hot(watch, key, input, config)) continue;
+    coolest = std::min(coolest, watch.at(key).normal);
+    fresh.push_back(key);
+  }
   if (!config.whole_things) return;
   while (!fresh.empty()) {
     const VoxelKey key = fresh.back();

@@ -34,8 +34,8 @@ void list_anomalies(Section section, ThermographyConfig& config) {
               "Least standard deviation of a voxel, in the unit of the images; 0: 6 greys or 0.3 K.", "", {0.0, 1e4});
   section.add("learned_after", model.learned_after,
               "Images before a voxel's normal intensity is known; 0: 12 of greys, 6 of others.", "", {0.0, 1000.0});
-  section.add("learned_views", model.learned_views, "And from so many viewpoints, unless the rig stands.", "",
-              {1.0, 100.0});
+  section.add("learned_views", model.learned_views,
+              "And from so many viewpoints, unless the rig stands; 0: 2 of greys, 1 of others.", "", {0.0, 100.0});
   section.add("adaptation", model.adaptation,
               "Weight of each later image: what is normal follows slow changes; 0: 0.02 of greys, 0.005 of others.", "",
               {0.0, 1.0});

@@ -1,6 +1,5 @@
 #include "pllit/slam/thermography_config.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace pllit {
@@ -33,7 +32,7 @@ ThermographyConfig open_thresholds() {
   ThermographyConfig config;
   VoxelModelConfig& model = config.map.model;
   model.noise = model.min_change = model.adaptation = config.anchor.loss = 0.0;
-  model.learned_after = 0;
+  model.learned_after = model.learned_views = 0;
   config.anomalies.watch.seam_voxels = -1;
   return config;
 }
@@ -70,10 +69,8 @@ ThermographyConfig by_unit(ThermographyConfig config, IntensityUnit unit) {
   if (watch.seam_voxels < 0) watch.seam_voxels = grey ? 2 : 0;
   if (config.unit == IntensityUnit::count) config.anchor.slope_sigma = config.anchor.affine_slope_doubt = 0.02;
   watch.bent_curves = config.anchor.shape == AnchorConfig::Shape::curve;
-  if (!grey) {  // one good reading says more than a dozen of video
-    model.passing_images = 2;
-    model.learned_views = std::min(model.learned_views, 1);
-  }
+  if (model.learned_views == 0) model.learned_views = grey ? 2 : 1;  // one good reading says more than many of video
+  if (!grey) model.passing_images = 2;
   if (!watch.bent_curves) {
     watch.least_past_s = 1.0;
     watch.whole_things = true;
