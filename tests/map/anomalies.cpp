@@ -3,14 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
+
+#include "support/box_before_wall.hpp"
 
 namespace pllit {
 namespace {
 
+bool is_alarm(const AnomalyDetector& detector) {
+  return std::ranges::any_of(detector.anomalies(),
+                             [](const Anomaly& anomaly) { return anomaly.confirmed.has_value(); });
+}
+
 /// Whether an alarm is raised for 3 x 3 voxels of a wall that show 100, and from the sixth second on 160, while a
-/// camera walks by; within a few pixels of them the image shows so much less all the time, but for the voxel in their
-/// middle.
-bool is_alarm(float dip, float dip_in_the_middle) {
+/// camera walks by; within a few pixels of them the image shows less all the time, by as much as `dip_of(y, z)` says.
+template <class Dip>
+bool is_alarm_where_less_is_beside(const Dip& dip_of) {
   ThermalMap map({});
   const SightLog past({});
   AnomalyDetector detector({});
@@ -23,24 +31,84 @@ bool is_alarm(float dip, float dip_in_the_middle) {
         view.observations.push_back({.p_W = Vector3d(3.0, 0.125 + 0.05 * y, 0.125 + 0.05 * z),
                                      .pixel_px = {0.0F, 0.0F},
                                      .intensity = grey,
-                                     .dip = image < 60         ? 0.0F
-                                            : y == 0 && z == 0 ? dip_in_the_middle
-                                                               : dip,
+                                     .dip = image < 60 ? 0.0F : dip_of(y, z),
                                      .raw = grey});
       }
     const auto seen = map.integrate(view);
     const Sight sight = sight_of(time, view.viewpoint_W, {}, past.config());
     detector.update({.map = map, .seen = seen, .sight = sight, .past = past}, view);
   }
-  return std::ranges::any_of(detector.anomalies(),
-                             [](const Anomaly& anomaly) { return anomaly.confirmed.has_value(); });
+  return is_alarm(detector);
 }
 
-TEST(Anomalies, AreWhatHasHeatedUp) { EXPECT_TRUE(is_alarm(0.0F, 0.0F)); }
+TEST(Anomalies, AreWhatHasHeatedUp) {
+  EXPECT_TRUE(is_alarm_where_less_is_beside([](int, int) { return 0.0F; }));
+}
 
 TEST(Anomalies, AreNotWhatMayAllBeAnEdgeThatIsSeenAFewPixelsOff) {
-  EXPECT_FALSE(is_alarm(50.0F, 50.0F));
-  EXPECT_FALSE(is_alarm(50.0F, 0.0F));  // one voxel is not enough
+  const auto but_for_the_first = [](int sure) {
+    return [sure](int y, int z) { return 3 * (y + 1) + z + 1 < sure ? 0.0F : 50.0F; };
+  };
+  EXPECT_FALSE(is_alarm_where_less_is_beside(but_for_the_first(0)));
+  EXPECT_FALSE(is_alarm_where_less_is_beside(but_for_the_first(2))) << "two voxels of nine are not enough";
+  EXPECT_TRUE(is_alarm_where_less_is_beside(but_for_the_first(3)));
+}
+
+/// A hot box stands before a wall after 20 s, of which a camera that has learned the wall sees some columns at times.
+class BoxThatCame {
+ public:
+  explicit BoxThatCame(const AnomalyConfig& config = {}) : detector_(config) {
+    for (int i = 0; i < 60; ++i)
+      past_.add(sight_of(at(i), {0.0, 0.002 * (i % 7), 0.0}, points(i >= 20), past_.config()));
+    for (int image = 0; image < 20; ++image) see(0.1 * image, 0.05 * image, 0);
+  }
+
+  void see(double seconds, double viewpoint_m, int columns) {
+    ThermalView view{.time = at(seconds), .viewpoint_W = Vector3d(0.0, viewpoint_m, 0.0)};
+    const auto show = [&](double x, double y, double z, float grey) {
+      view.observations.push_back({.p_W = Vector3d(x, y, z), .pixel_px = {0.0F, 0.0F}, .intensity = grey, .raw = grey});
+    };
+    for (double z = -0.35; z <= 0.351; z += 0.05) {
+      for (double y = 1.0; y <= 1.501; y += 0.05) show(4.0, y, z, 80.0F);
+      for (int column = 0; column < columns; ++column) show(2.0, 0.05 * column - 0.35, z, 200.0F);
+    }
+    const auto seen = map_.integrate(view);
+    const Sight sight = sight_of(view.time, Vector3d::Zero(), points(seconds >= 20.0), past_.config());
+    detector_.update({.map = map_, .seen = seen, .sight = sight, .past = past_}, view);
+  }
+  bool is_told() const { return is_alarm(detector_); }
+
+  static constexpr int kColumns = 15;
+
+ private:
+  static Time at(double seconds) { return Time{} + from_seconds(seconds); }
+  static std::vector<Vector3f> points(bool box) {
+    return test::box_before_wall(box ? std::optional(0.4) : std::nullopt);
+  }
+
+  SightLog past_{{.spacing_m = 0.001}};
+  ThermalMap map_{{}};
+  AnomalyDetector detector_;
+};
+
+TEST(Anomalies, AreWhatWasOnlyGlimpsedWhenItCame) {
+  BoxThatCame box;
+  for (int image = 0; image < 4; ++image) box.see(21.0 + 0.1 * image, 0.0, box.kColumns);
+  EXPECT_FALSE(box.is_told()) << "not yet: it was too short a look";
+  for (int image = 0; image < 60; ++image) box.see(22.0 + 0.5 * image, 0.0, 0);
+  for (int image = 0; image < 4; ++image) box.see(53.0 + 0.1 * image, 0.3, box.kColumns);
+  EXPECT_TRUE(box.is_told());
+}
+
+TEST(Anomalies, AreWhatComesIntoSightLittleByLittleIfAllOfItIsFoundToHaveCome) {
+  AnomalyConfig config;
+  config.watch.whole_things = true;
+  config.watch.part_voxels = 2;
+  config.watch.surround_deg = 35.0;
+  config.enough_seeds = 100;  // more than the columns that are seen first
+  BoxThatCame box(config);
+  for (int image = 0; image < 15; ++image) box.see(21.0 + 0.1 * image, 0.05 * image, std::min(image + 1, box.kColumns));
+  EXPECT_TRUE(box.is_told());
 }
 
 }  // namespace

@@ -90,11 +90,12 @@ EvenCentroid place_of(const Watch& watch, std::uint32_t id, double cell_m) {
   return place;
 }
 
-/// Voxels of which so much of the change is left however they lie to the edges of the image.
-int sure_voxels(const Watch& watch, std::uint32_t id, double least) {
+/// Voxels judged by themselves of which so much of the change is left however they lie to the edges of the image.
+int sure_seeds(const Watch& watch, std::uint32_t id, double least) {
   return static_cast<int>(std::ranges::count_if(watch, [&](const auto& entry) {
     const WatchedVoxel& watched = entry.second;
-    return watched.owner == id && watched.hot && static_cast<double>(watched.sure) >= least;
+    const bool seed = watched.owner == id && watched.hot && !watched.joined;
+    return seed && static_cast<double>(watched.sure) >= least;
   }));
 }
 
@@ -242,7 +243,8 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
   const int seeds = members.known + members.new_surfaces;
   if (members.own_change < map.model.min_change * seeds || members.own_sigmas < config_.min_sigmas * seeds) return;
   if (seeds < std::clamp(members.hot / config_.parts_of_one, kFewestSeeds, config_.enough_seeds)) return;
-  if (sure_voxels(watch_, anomaly.id, config_.sure_share * map.model.min_change) < kFewestSeeds) return;
+  const int sure = sure_seeds(watch_, anomaly.id, config_.sure_change * map.model.min_change);
+  if (sure < kFewestSeeds || 3 * sure < seeds) return;
   const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
   const bool watched_long =
       to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;

@@ -17,17 +17,18 @@ struct AnomalyConfig {
   int min_views = 2;  ///< viewpoints that it must have been hot from, twice as many where it is one voxel thick: what
                       ///< is seen past an edge moves ...
   double still_dwell_s = 3.0;  ///< ... or how long, for a rig that stands
-  /// So much of the least change must be left in two voxels however they lie to the edges of the image: at its edge a
-  /// hot thing may be a seam that is seen a few pixels off, inside it is one.
-  double sure_share = 0.67;
+  /// So much of the least change must be left in a third of the voxels that are judged by themselves, and in two,
+  /// however they lie to the edges of the image: at its edge a hot thing may be a seam that is seen a few pixels off,
+  /// inside it is one.
+  double sure_change = 0.67;
   double join_m = 0.1;  ///< hot voxels in neighbouring cells of this size are one anomaly
   int parts_of_one =
       5;  ///< so many voxels to one that is judged by itself: a mistake must not take in a whole cabinet;
   int enough_seeds = 8;        ///< ... but so many of these are enough
   double place_cell_m = 0.15;  ///< its position is the mean over cells of this size, whatever they hold
   double max_leaving = 0.3;    ///< clusters of which a greater share has left their place are moving: people, vehicles
-  double registration_m = 0.02;  ///< how well images and surfaces lie on each other, one sigma
-  double forget_fresh_s = 10.0;  ///< what was never confirmed is dropped when not seen for so long
+  double registration_m = 0.02;   ///< how well images and surfaces lie on each other, one sigma
+  double forget_fresh_s = 120.0;  ///< what was never confirmed is dropped when not seen for so long
 };
 
 /// Follows what is hot from image to image. Anomalies keep their numbers; those that were never confirmed vanish again.

@@ -128,6 +128,17 @@ void take_in_new(Watch& watch, NewSurfaces& surfaces, VoxelKey key, const Therma
   watch.emplace(key, watched);
 }
 
+/// A part of a hot thing that is hot by itself, as far as can be known: it counts as one that was judged.
+void judge_part(Watch& watch, NewSurfaces& surfaces, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
+                const WatchConfig& config) {
+  const auto normal = cooler_before(input, watch, surfaces, key, voxel, config);
+  if (!normal) return;
+  WatchedVoxel& part = watch.at(key);
+  part.joined = false;
+  part.normal = normal->value;
+  part.sigma = normal->sigma;
+}
+
 bool still_hot(const WatchedVoxel& watched, const ThermalVoxel& voxel, const VoxelModelConfig& model,
                const WatchConfig& config) {
   if (watched.new_surface)
@@ -182,7 +193,11 @@ Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
   for (const VoxelKey key : input.seen) {
     const ThermalVoxel& voxel = *input.map.find(key);
     if (const auto found = watch.find(key); found != watch.end()) {
-      if (!is_away(found->second, input)) follow(found->second, key, voxel, input, config);
+      WatchedVoxel& known = found->second;
+      if (is_away(known, input)) continue;
+      follow(known, key, voxel, input, config);
+      if (known.hot && known.joined && known.new_surface)
+        judge_part(watch, surfaces, key, voxel, input, config);
       continue;
     }
     if (voxel.hot)
