@@ -78,6 +78,30 @@ TEST(Report, SaysWhatWasNotSeenAndWhenItWasInDoubt) {
   EXPECT_THAT(report_html(content, run_json()), HasSubstr("says nothing about heat"));
 }
 
+TEST(Report, DrawsHowLocalisationWentWithTheWorstOfEachMoment) {
+  ReportContent content = visit();
+  for (int i = 0; i < 5000; ++i)
+    content.health.push_back({.time_s = 1.7e9 + 0.1 * i, .state = "good", .sigma_m = 0.01, .matched = 400.0});
+  EXPECT_THAT(report_html(content, run_json()), Not(HasSubstr("#c22\"/>"))) << "never lost";
+  content.health[3000].state = "lost";
+  content.health[3000].sigma_m = 3.5;
+  const std::string html = report_html(content, run_json());
+  EXPECT_THAT(html, HasSubstr("#c22\"/>")) << "one frame of five thousand";
+  EXPECT_THAT(html, HasSubstr(">5</text><text")) << "the sigma's axis reaches above 3.5 m";
+  EXPECT_THAT(html, HasSubstr(">500 s</text>"));
+  content.health.resize(1);
+  EXPECT_THAT(report_html(content, run_json()), Not(HasSubstr("<svg")));
+}
+
+TEST(Report, CarriesRecordingAndConfiguration) {
+  Json run = run_json();
+  run["sources"] = {"hall.bag"};
+  run["config"] = "input:\n  unit: <auto>\n";
+  const std::string html = report_html(visit(), run);
+  EXPECT_THAT(html, HasSubstr("Recording: hall.bag"));
+  EXPECT_THAT(html, HasSubstr("unit: &lt;auto&gt;"));
+}
+
 TEST(Report, NeedsNothingButItself) {
   ReportContent content = visit();
   content.anomalies = {finding(3, 40.0)};

@@ -163,7 +163,7 @@ std::string health_section(const ReportContent& content, const Json& run) {
                                      run["loops"]["rejected"].get<int>()));
   if (run.contains("ape") && run["ape"]["rmse"].is_number())
     html += row("error against the truth", std::format("{:.3f} m rms", run["ape"]["rmse"].get<double>()));
-  html += "</table></div>\n";
+  html += "</table></div>\n" + health_plot(content.health);
   if (!content.doubts.empty()) {
     html += "<div class=\"wide\"><table><tr><th>from</th><th>for</th><th>state</th><th>why</th></tr>\n";
     for (const DoubtfulStretch& doubt : content.doubts)
@@ -175,13 +175,18 @@ std::string health_section(const ReportContent& content, const Json& run) {
 }
 
 std::string footer(const ReportContent& content, const Json& run) {
-  return std::format(
+  std::string html = std::format(
       "<h2>How this was made</h2><p class=\"muted\">{}. Changes in {} against what each place showed before on this "
-      "visit; "
-      "3 sigma, several neighbouring voxels, several images and half a second are needed for an alarm. Positions are "
-      "in the "
-      "session's map frame. A person qualified in thermography decides what a finding means.</p>\n",
+      "visit; 3 sigma, several neighbouring voxels, several images and half a second are needed for an alarm. "
+      "Positions "
+      "are in the session's map frame. A person qualified in thermography decides what a finding means.</p>\n",
       escaped(run.value("program", "")), unit_text(content.unit));
+  for (const Json& source : run.value("sources", Json::array()))
+    html += std::format("<p class=\"muted\">Recording: {}</p>\n", escaped(source.get<std::string>()));
+  if (const std::string config = run.value("config", ""); !config.empty())
+    html += std::format("<details><summary>Configuration</summary><pre class=\"wide\">{}</pre></details>\n",
+                        escaped(config));
+  return html;
 }
 
 }  // namespace

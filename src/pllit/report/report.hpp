@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pllit/map/radiometry.hpp"
+#include "pllit/report/health_plot.hpp"
 #include "pllit/report/severity.hpp"
 #include "pllit/state/table.hpp"
 #include "pllit/state/trajectory.hpp"
@@ -35,6 +36,7 @@ struct ReportContent {
   std::vector<Anomaly> anomalies{};
   std::map<std::uint32_t, cv::Mat> crops{};  ///< by the anomaly's number, as the camera gave them
   std::vector<DoubtfulStretch> doubts{};
+  std::vector<HealthSample> health{};  ///< frame by frame
   SeverityTable severity = neta_100_18();
 };
 
