@@ -75,7 +75,13 @@ TEST(Findings, HaveTheKeysThatWerePromised) {
   EXPECT_NEAR(json["position_m"]["median"].get<double>(), 0.05, 1e-9);
   EXPECT_NEAR(json["position_m"]["max"].get<double>(), 0.05, 1e-9);
   EXPECT_NEAR(json["delay_s"]["max"].get<double>(), 0.6, 1e-6);
-  EXPECT_TRUE(findings_json(scored({}))["position_m"]["max"].is_null());
+  ASSERT_EQ(json["each"].size(), 1u);
+  EXPECT_EQ(json["each"][0]["found"], true);
+  EXPECT_NEAR(json["each"][0]["position_m"].get<double>(), 0.05, 1e-9);
+  const Json nothing = findings_json(scored({}));
+  EXPECT_TRUE(nothing["position_m"]["max"].is_null());
+  EXPECT_EQ(nothing["each"][0]["found"], false);
+  EXPECT_TRUE(nothing["each"][0]["delay_s"].is_null());
 }
 
 TEST(Findings, SayWhatASceneLacks) {

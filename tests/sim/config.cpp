@@ -84,7 +84,7 @@ TEST(SimulationText, SetsTheKeysOfWorlds) {
       "sim:plant?rig=inspection&motion=walk.tum&speedup=1.4&way=mirrored&length=80&imu=bmi088&image_rate=25&images="
       "both&light=night"
       "&people=3&finding=pipe&arrival=brought&finding_at=20&finding_K=12&lost_share=0.1&clock_drift=20&late_by=0.2&"
-      "image_gap=1:2");
+      "image_gap=1:2&hot_boxes=4&air_drift=-20");
   ASSERT_TRUE(config) << config.error().message;
   EXPECT_EQ(config->rig, SimConfig::RigName::inspection);
   EXPECT_EQ(config->motion, "walk.tum");
@@ -96,6 +96,8 @@ TEST(SimulationText, SetsTheKeysOfWorlds) {
   EXPECT_EQ(config->finding, SimConfig::Finding::pipe);
   EXPECT_EQ(config->arrival, SimConfig::Arrival::brought);
   EXPECT_EQ(config->finding_K, 12.0);
+  EXPECT_EQ(config->hot_boxes, 4);
+  EXPECT_EQ(config->air_drift_Kph, -20.0);
   EXPECT_EQ(config->faults.lost_share, 0.1);
   EXPECT_EQ(config->faults.late_by_s, 0.2);
 }
@@ -103,7 +105,8 @@ TEST(SimulationText, SetsTheKeysOfWorlds) {
 TEST(SimulationText, RefusesWhatDoesNotGoTogetherAndSaysWhy) {
   EXPECT_THAT(error_of("sim:room?lidar=ring16"), AllOf(HasSubstr("does not go with room"), HasSubstr("rig")));
   EXPECT_THAT(error_of("sim:box_room?rig=hilti2022"), HasSubstr("does not go with box_room"));
-  EXPECT_THAT(error_of("sim:street?finding=pipe"), HasSubstr("needs a room or a plant"));
+  EXPECT_THAT(error_of("sim:street?finding=pipe"), HasSubstr("need a room or a plant"));
+  EXPECT_THAT(error_of("sim:field?hot_boxes=2"), HasSubstr("need a room or a plant"));
   EXPECT_THAT(error_of("sim:room?cars=2"), HasSubstr("needs a street"));
   EXPECT_THAT(error_of("sim:room?bare=1"), HasSubstr("needs a corridor"));
   EXPECT_THAT(error_of("sim:room?way=mirrored"), HasSubstr("needs motion=FILE"));

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Sequences, AreThePapersRowsEachInAWorldOfItsOwn) {
+TEST(Sequences, AreThePapersRowsAndOursEachInAWorldOfItsOwn) {
   const auto table = parse_sequences(sequences_yaml());
   ASSERT_TRUE(table) << table.error().message;
   std::vector<std::string> names;
@@ -24,7 +24,7 @@ TEST(Sequences, AreThePapersRowsEachInAWorldOfItsOwn) {
     EXPECT_TRUE(find_config(row.config)) << row.name;
   }
   EXPECT_THAT(names, testing::UnorderedElementsAre("H04", "H05", "H06", "H14", "H16", "H18", "N1", "N2", "N3", "A1",
-                                                   "A2", "A3"));
+                                                   "A2", "A3", "C1", "C2", "S1", "S2"));
   EXPECT_EQ(worlds.size(), names.size());
 }
 

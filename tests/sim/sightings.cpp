@@ -9,7 +9,7 @@ namespace {
 void add_side(Sighting& sighting, float x_m, float width_m, int times) {
   for (int round = 0; round < times; ++round)
     for (float y = 0.0025F; y < width_m; y += 0.005F)
-      for (float z = 0.0025F; z < 0.2F; z += 0.005F) sighting.add({x_m, y, z});
+      for (float z = 0.0025F; z < 0.2F; z += 0.005F) sighting.add({x_m, y, z}, 1.0);
 }
 
 TEST(Sighting, HasNoCentroidBeforeAnythingWasSeen) { EXPECT_FALSE(Sighting().centroid_O()); }

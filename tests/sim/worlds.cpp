@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <set>
 
 #include "pllit/sim/sequences.hpp"
 #include "pllit/sim/simulation.hpp"
@@ -114,6 +116,29 @@ TEST(SimulatedWorlds, TellWhatIsToBeFoundAndWhenItCouldBeSeen) {
   const auto json = scene_json(truth, "sim:...");
   EXPECT_EQ(json["objects"].size(), truth.objects.size());
   EXPECT_NE(json["T_I_C"]["known"], json["T_I_C"]["true"]);
+}
+
+TEST(SimulatedWorlds, HoldAsManyHotBoxesAsAreAskedForEachOfItsOwnKind) {
+  const std::string place = "sim:plant?rig=inspection&images=none&scans=0&duration=3&finding_at=2&seed=2";
+  auto with = open_simulation(place + "&finding=pipe&hot_boxes=6"), without = open_simulation(place + "&finding=pipe");
+  ASSERT_TRUE(with && without);
+  const auto objects = with->scene_truth().objects;
+  EXPECT_EQ(std::ranges::count_if(objects, &SceneObject::finding), 7);
+  std::set<std::string> names;
+  std::set<double> sizes_m;
+  for (const SceneObject& object : objects) {
+    names.insert(object.name);
+    if (!object.size_m) continue;
+    sizes_m.insert(*object.size_m);
+    EXPECT_TRUE(*object.size_m >= 0.1 && *object.size_m <= 0.5) << *object.size_m;
+    EXPECT_TRUE(object.by_K >= 5.0 && object.by_K <= 40.0) << object.by_K;
+    EXPECT_TRUE(object.begins_s >= 25.0 && object.begins_s <= 50.0) << object.begins_s;
+  }
+  EXPECT_EQ(names.size(), objects.size());
+  EXPECT_EQ(sizes_m.size(), 6u);
+  const auto alone = without->scene_truth().objects;
+  EXPECT_EQ(alone.front().name, objects.front().name);
+  EXPECT_EQ(alone.front().centroid_W, objects.front().centroid_W) << "the named finding stands where it would alone";
 }
 
 TEST(SimulatedWorlds, AreVisitedAgainOnAnotherWalk) {

@@ -67,11 +67,15 @@ FindingScores score_findings(std::span<const Anomaly> anomalies, std::span<const
       if (!largest || anomaly->voxels > largest->voxels) largest = anomaly;
       first = std::min(first.value_or(*anomaly->confirmed), *anomaly->confirmed);
     }
+    scores.each.push_back({.name = object.name, .found = largest != nullptr});
     if (!largest) continue;
     ++scores.found;
     scores.duplicates += count - 1;
-    scores.position_m.push_back((T_W_V.act(largest->position_W) - object.centroid_W).norm());
-    scores.delay_s.push_back(to_seconds(*first - *object.first_seen));
+    ObjectScore& score = scores.each.back();
+    score.position_m = (T_W_V.act(largest->position_W) - object.centroid_W).norm();
+    score.delay_s = to_seconds(*first - *object.first_seen);
+    scores.position_m.push_back(score.position_m);
+    scores.delay_s.push_back(score.delay_s);
   }
   return scores;
 }
@@ -80,12 +84,19 @@ Json findings_json(const FindingScores& scores) {
   const auto figure = [&](double value) { return scores.found > 0 ? Json(value) : Json(nullptr); };
   const Statistics position = statistics_of(scores.position_m);
   const double delay_s = scores.found > 0 ? *std::ranges::max_element(scores.delay_s) : 0.0;
+  Json each = Json::array();
+  for (const ObjectScore& score : scores.each)
+    each.push_back({{"name", score.name},
+                    {"found", score.found},
+                    {"position_m", score.found ? Json(score.position_m) : Json(nullptr)},
+                    {"delay_s", score.found ? Json(score.delay_s) : Json(nullptr)}});
   return {{"objects", scores.objects},
           {"found", scores.found},
           {"false_alarms", scores.false_alarms},
           {"duplicates", scores.duplicates},
           {"position_m", {{"median", figure(position.median)}, {"max", figure(position.max)}}},
-          {"delay_s", {{"max", figure(delay_s)}}}};
+          {"delay_s", {{"max", figure(delay_s)}}},
+          {"each", std::move(each)}};
 }
 
 }  // namespace pllit

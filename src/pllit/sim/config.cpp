@@ -166,8 +166,10 @@ std::vector<Key> world_keys() {
           {{"drawn", C::Arrival::drawn}, {"heated", C::Arrival::heated}, {"brought", C::Arrival::brought}}),
       number_key("finding_at", For::worlds, PLLIT_FIELD(finding_at_s), 0.0, 36000.0, "seconds"),
       number_key("finding_K", For::worlds, PLLIT_FIELD(finding_K), 0.5, 300.0, "kelvin"),
+      count_key("hot_boxes", &C::hot_boxes, 30),
       count_key("visit", &C::visit, 1000),
       number_key("warmer_K", For::worlds, PLLIT_FIELD(warmer_K), -60.0, 60.0, "kelvin"),
+      number_key("air_drift", For::worlds, PLLIT_FIELD(air_drift_Kph), -300.0, 300.0, "kelvin an hour"),
   };
 }
 
@@ -230,8 +232,8 @@ std::optional<std::string> apply(std::string_view assignment, std::vector<Key>& 
 /// What cannot be together, though each value is right.
 std::optional<std::string> contradiction(const SimConfig& config) {
   const bool inside = config.scene == SceneKind::room || config.scene == SceneKind::plant;
-  if (config.finding != SimConfig::Finding::none && !inside)
-    return std::format("finding= needs a room or a plant; a {} has no table, cabinet or pipe", name_of(config.scene));
+  if ((config.finding != SimConfig::Finding::none || config.hot_boxes > 0) && !inside)
+    return std::format("finding= and hot_boxes= need a room or a plant, not a {}", name_of(config.scene));
   if (config.finding != SimConfig::Finding::none && config.duration_s && config.finding_at_s >= *config.duration_s)
     return std::format("finding_at={} lies beyond duration={}", config.finding_at_s, *config.duration_s);
   if (config.bare && config.scene != SceneKind::corridor) return "bare= needs a corridor";

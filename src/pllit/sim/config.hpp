@@ -78,8 +78,10 @@ struct SimConfig {
   Finding finding = Finding::none;
   Arrival arrival = Arrival::drawn;
   double finding_at_s = 40.0, finding_K = 25.0;
-  int visit = 0;          ///< of the same place and rig: from 1 on, another walk and other noise than on the first
-  double warmer_K = 0.0;  ///< air and everything in it, than on the first visit
+  int hot_boxes = 0;           ///< further findings of random size, heat, distance and time
+  int visit = 0;               ///< of the same place and rig: from 1 on, another walk and other noise than on the first
+  double warmer_K = 0.0;       ///< air and everything in it, than on the first visit
+  double air_drift_Kph = 0.0;  ///< further drift of the air, which surfaces follow by their shares
 };
 
 /// Of what differs from visit to visit: the walk, noise, vibration.

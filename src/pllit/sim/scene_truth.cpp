@@ -19,6 +19,8 @@ Json noise_json(const ImuNoise& noise) {
           {"accel_bias_walk", noise.accel_bias_walk}};
 }
 
+Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
 Json object_json(const SceneObject& object) {
   return {{"name", object.name},
           {"finding", object.finding},
@@ -26,7 +28,9 @@ Json object_json(const SceneObject& object) {
           {"begins_s", object.begins_s},
           {"by_K", object.by_K},
           {"centroid_W", vector_json(object.centroid_W)},
-          {"first_seen_s", object.first_seen_s ? Json(*object.first_seen_s) : Json()}};
+          {"first_seen_s", number_or_null(object.first_seen_s)},
+          {"nearest_m", number_or_null(object.nearest_m)},
+          {"size_m", number_or_null(object.size_m)}};
 }
 
 }  // namespace

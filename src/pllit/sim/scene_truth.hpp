@@ -20,7 +20,9 @@ struct SceneObject {
   double begins_s = 0.0;                   ///< since the start
   double by_K = 0.0;                       ///< warmer than its surroundings or than it was
   Vector3d centroid_W = Vector3d::Zero();  ///< of the surface that the camera saw; if none, of what faces the path
-  std::optional<double> first_seen_s;      ///< first frame with enough unoccluded pixels
+  std::optional<double> first_seen_s{};    ///< first frame with enough unoccluded pixels
+  std::optional<double> nearest_m{};       ///< from how near the camera saw it then
+  std::optional<double> size_m{};          ///< edge of a hot box
 };
 
 struct SceneTruth {

@@ -53,7 +53,8 @@ double begins_s(const Actor& actor) {
   return actor.heating.empty() ? actor.appears_s : std::max(actor.appears_s, actor.heating.front().at_s);
 }
 
-void Sighting::add(const Vector3f& p_O) {
+void Sighting::add(const Vector3f& p_O, double range_m) {
+  nearest_m = std::min(nearest_m.value_or(range_m), range_m);
   Patch& patch = patches_[voxel_key(voxel_of(p_O, 1.0F / static_cast<float>(kPatch_m)))];
   patch.sum_m += p_O;
   patch.points += 1.0F;
@@ -70,14 +71,16 @@ void Sightings::look(const RayCaster& caster, const Camera& camera, const SE3& T
   for (std::uint32_t i = 0; i < seen_.size(); ++i) {
     const Actor& actor = place_->actors()[i];
     if (!actor.finding || t_s < begins_s(actor) || t_s > actor.vanishes_s) continue;
-    const auto window = window_of(actor, camera, T_W_C.inverse() * actor.path.front().T_W_O);
+    const SE3 T_C_O = T_W_C.inverse() * actor.path.front().T_W_O;
+    const auto window = window_of(actor, camera, T_C_O);
     if (!window) continue;
     Sighting& sighting = seen_[i];
     if (!sighting.first_s && points_in(*window, 1, kPixels, i, caster, camera, T_W_C).size() == kPixels)
       sighting.first_s = t_s;
     if (!sighting.first_s) continue;
     constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-    for (const Vector3f& p_O : points_in(*window, step_of(*window), kAll, i, caster, camera, T_W_C)) sighting.add(p_O);
+    for (const Vector3f& p_O : points_in(*window, step_of(*window), kAll, i, caster, camera, T_W_C))
+      sighting.add(p_O, T_C_O.act(p_O.cast<double>()).norm());
   }
 }
 

@@ -17,11 +17,12 @@ class Sighting {
   static constexpr double kPatch_m = 0.02;
 
   /// Of a point in the actor's frame.
-  void add(const Vector3f& p_O);
+  void add(const Vector3f& p_O, double range_m);
   /// Centroid of the surface that was seen, each patch of it once; nothing where none was.
   std::optional<Vector3d> centroid_O() const;
 
-  std::optional<double> first_s;  ///< first frame with enough unoccluded pixels, since the start
+  std::optional<double> first_s;    ///< first frame with enough unoccluded pixels, since the start
+  std::optional<double> nearest_m;  ///< from how near it was seen
 
  private:
   struct Patch {

@@ -10,6 +10,7 @@
 #include "pllit/sim/motions.hpp"
 #include "pllit/sim/places/make_place.hpp"
 #include "pllit/sim/random.hpp"
+#include "pllit/sim/scene_objects.hpp"
 #include "pllit/sim/sensors.hpp"
 
 namespace pllit {
@@ -57,7 +58,8 @@ constexpr double kReach_m = 150.0;
 SimConfig::RigName rig_for(const SimConfig& config) {
   if (config.rig) return *config.rig;
   if (config.scene == SceneKind::street || config.scene == SceneKind::field) return SimConfig::RigName::ntu4dradlm;
-  const bool inspected = config.scene == SceneKind::plant || config.finding != SimConfig::Finding::none;
+  const bool inspected =
+      config.scene == SceneKind::plant || config.finding != SimConfig::Finding::none || config.hot_boxes > 0;
   return inspected ? SimConfig::RigName::inspection : SimConfig::RigName::hilti2022;
 }
 
@@ -78,19 +80,6 @@ PlaceKind place_kind(SceneKind scene) {
   }
 }
 
-FindingSpec finding_of(const SimConfig& config) {
-  const bool heated = config.arrival == SimConfig::Arrival::drawn ? Random(config.seed, 42).uniform() < 0.5
-                                                                  : config.arrival == SimConfig::Arrival::heated;
-  using Kind = FindingSpec::Kind;
-  const Kind kind = config.finding == SimConfig::Finding::table     ? Kind::on_table
-                    : config.finding == SimConfig::Finding::cabinet ? Kind::cabinet
-                                                                    : Kind::pipe;
-  return {.kind = kind,
-          .arrival = heated ? FindingSpec::Arrival::heated_in_place : FindingSpec::Arrival::brought_in_hot,
-          .at_s = config.finding_at_s,
-          .by_K = config.finding_K};
-}
-
 /// Where the rig goes, evenly in time.
 std::vector<Vector3d> path_of(const Motion& motion, Time end) {
   const double duration_s = to_seconds(end - motion.start());
@@ -108,30 +97,14 @@ PlaceConfig place_config(const SimConfig& config, const SimRig& rig, const Motio
   place.height_m = rig.height_m;
   place.clearance_m = rig.on_car ? 2.5 : 0.6;
   place.warmer_K = config.warmer_K;
+  place.air_drift_Kph = config.air_drift_Kph;
   place.light = config.day ? Light::day : Light::night;
   place.bare = config.bare;
   place.people = config.people;
   place.cars = config.cars;
-  if (config.finding != SimConfig::Finding::none) {
-    place.findings.push_back(finding_of(config));
-    place.distractors = {{.kind = DistractorSpec::Kind::cold_object, .at_s = config.finding_at_s},
-                         {.kind = DistractorSpec::Kind::hot_radiator, .at_s = 0.0}};
-  }
+  place.findings = findings_of(config);
+  place.distractors = distractors_of(config);
   return place;
-}
-
-SceneObject object_of(const Actor& actor, const SimConfig& config, const std::vector<Vector3d>& path_W) {
-  const double begins = begins_s(actor);
-  const bool there = begins <= 0.0;
-  return {.name = actor.name,
-          .finding = actor.finding,
-          .arrival = there                   ? "there"
-                     : actor.heating.empty() ? "brought"
-                                             : "heated",
-          .begins_s = begins,
-          .by_K = actor.finding ? config.finding_K : 0.0,
-          .centroid_W = visible_centroid_W(actor, begins, path_W),
-          .first_seen_s = {}};
 }
 
 }  // namespace
@@ -271,15 +244,7 @@ SceneTruth Simulation::scene_truth() const {
   truth.camera = *parts.built.camera();
   truth.lidar_clock = parts.built.lidar_clock;
   truth.camera_clock = parts.built.camera_clock;
-  const std::vector<Actor>& actors = parts.around->place->actors();
-  for (std::size_t i = 0; i < actors.size(); ++i) {
-    if (actors[i].path.size() > 1) continue;  // people and cars go their own way
-    truth.objects.push_back(object_of(actors[i], parts.config, path_W));
-    const Sighting& sighting = parts.sightings->seen()[i];
-    truth.objects.back().first_seen_s = sighting.first_s;
-    if (const auto centroid_O = sighting.centroid_O())
-      truth.objects.back().centroid_W = actors[i].path.front().T_W_O.act(*centroid_O);
-  }
+  truth.objects = objects_of(*parts.around->place, findings_of(parts.config), parts.sightings->seen(), path_W);
   return truth;
 }
 

@@ -12,7 +12,7 @@ namespace {
 using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
 
-constexpr double kNearest_m = 1.5, kFarthest_m = 3.2;  // horizontally; height adds to it
+constexpr double kNearest_m = 1.5;  // horizontally; height adds to it
 constexpr double kOffPath_m = 1.5;
 constexpr double kBody_m = 0.35;  // half a person's width, stride and all
 
@@ -22,17 +22,17 @@ struct Spot {
   std::vector<Vector2d> seen_from;
 };
 
-/// From where on a stretch of the path, given by indices, something lies ahead and in sight; nothing where it hardly
-/// ever does.
+/// From where on a stretch of the path, given by indices, something lies ahead, near enough and in sight; nothing where
+/// it hardly ever does.
 std::optional<Vector2d> seen_ahead(const FloorPlan& plan, std::size_t from, std::size_t to, const Vector2d& centre,
-                                   double z_m) {
-  constexpr double kReach_m = 6.0, kAhead_cos = 0.95;  // a camera sees 20 degrees and more to either side
+                                   double z_m, double reach_m) {
+  constexpr double kAhead_cos = 0.95;  // a camera sees 20 degrees and more to either side
   constexpr std::size_t kStep = 4, kOften = 6;
   const auto& path = plan.site().path_P.points();
   std::vector<Vector2d> places;
   for (std::size_t i = std::max(from, kStep); i + kStep < std::min(to, path.size()); ++i) {
     const Vector2d ahead = (path[i + kStep] - path[i - kStep]).head<2>(), towards = centre - path[i].head<2>();
-    if (towards.norm() > kReach_m || ahead.dot(towards) < kAhead_cos * ahead.norm() * towards.norm()) continue;
+    if (towards.norm() > reach_m || ahead.dot(towards) < kAhead_cos * ahead.norm() * towards.norm()) continue;
     if (plan.sees(path[i].head<2>(), centre, z_m)) places.emplace_back(path[i].head<2>());
   }
   if (places.size() < kOften) return std::nullopt;
@@ -52,7 +52,8 @@ bool seen_while_passing(const FloorPlan& plan, std::size_t point, const Vector2d
 /// A free spot that comes into sight after a time of the motion, and where that is not its start, before it too, if the
 /// path leads anywhere twice: what nobody saw before has not changed.
 std::optional<Spot> find_spot(const PlaceConfig& config, const AlignedBox2d& box_P, double size_m, double z_m,
-                              double after_s, const FloorPlan& plan, Random& random) {
+                              double after_s, double farthest_m, const FloorPlan& plan, Random& random) {
+  const double reach_m = std::max(6.0, farthest_m + 1.5);
   const auto& path = plan.site().path_P.points();
   const double from = std::clamp(after_s / config.duration_s + 0.05, 0.05, 0.8);
   const auto start = static_cast<std::size_t>(from * static_cast<double>(path.size()));
@@ -60,15 +61,15 @@ std::optional<Spot> find_spot(const PlaceConfig& config, const AlignedBox2d& box
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const auto point = static_cast<std::size_t>(random.uniform(from, 0.95) * static_cast<double>(path.size()));
     const double angle = random.uniform(-std::numbers::pi, std::numbers::pi),
-                 range_m = random.uniform(kNearest_m + 0.05, kFarthest_m);
+                 range_m = random.uniform(kNearest_m + 0.05, farthest_m);
     const Vector2d from_path = path[point].head<2>(),
                    centre = from_path + range_m * Vector2d(std::cos(angle), std::sin(angle));
     const AlignedBox2d box = footprint(centre, size_m, size_m);
     if (!box_P.contains(box) || !plan.free(box, 0.1)) continue;
-    if (plan.site().path_P.nearest(centre, kFarthest_m).distance_m < kNearest_m) continue;
+    if (plan.site().path_P.nearest(centre, farthest_m).distance_m < kNearest_m) continue;
     if (!seen_while_passing(plan, point, centre, z_m)) continue;
-    const auto later = seen_ahead(plan, start, path.size(), centre, z_m),
-               earlier = after_s > 0.0 ? seen_ahead(plan, 0, start, centre, z_m) : later;
+    const auto later = seen_ahead(plan, start, path.size(), centre, z_m, reach_m),
+               earlier = after_s > 0.0 ? seen_ahead(plan, 0, start, centre, z_m, reach_m) : later;
     if (attempt < kPicky && !(later && earlier)) continue;
     const Vector2d back = from_path - centre;
     const double quarter = 0.5 * std::numbers::pi;
@@ -112,9 +113,9 @@ void warm(Actor& actor, const FindingSpec& spec) {
 
 constexpr double kTable_m = 0.74;
 
-Actor found_object(FindingSpec::Kind kind, const Spot& spot, double ceiling_m, const SE3& T_W_P, SceneBuilder& scene,
+Actor found_object(const FindingSpec& spec, const Spot& spot, double ceiling_m, const SE3& T_W_P, SceneBuilder& scene,
                    Random& random) {
-  switch (kind) {
+  switch (spec.kind) {
     case FindingSpec::Kind::cabinet:
       return standing("cabinet", shapes::cabinet({0.35F, 0.6F, 1.1F}, random), spot, 0.0, T_W_P);
     case FindingSpec::Kind::pipe: {
@@ -122,10 +123,14 @@ Actor found_object(FindingSpec::Kind kind, const Spot& spot, double ceiling_m, c
       scene.add(put(shapes::cylinder(kRadius, static_cast<float>(ceiling_m), 12, {Material::painted_metal}), spot));
       return standing("valve", shapes::flange(kRadius), spot, random.uniform(0.9, 1.3), T_W_P);
     }
+    case FindingSpec::Kind::box:
     case FindingSpec::Kind::on_table:
       break;
   }
   scene.add(put(shapes::table({0.6F, 0.7F, static_cast<float>(kTable_m)}, Material::wood), spot));
+  if (spec.kind == FindingSpec::Kind::box)
+    return standing("box", shapes::box(Vector3d::Constant(spec.size_m).cast<float>(), {Material::painted_metal}), spot,
+                    kTable_m, T_W_P);
   const bool kettle = random.uniform() < 0.5;
   return standing(kettle ? "kettle" : "toolbox", kettle ? shapes::kettle() : shapes::toolbox(), spot, kTable_m, T_W_P);
 }
@@ -148,11 +153,11 @@ Expected<std::vector<Actor>> add_findings(const PlaceConfig& config, const Align
   constexpr double kSize_m = 0.75;
   Random random(config.seed, 70);
   std::vector<Actor> actors;
-  const auto spot_after = [&](double after_s, double z_m) {
+  const auto spot_after = [&](double after_s, double z_m, double farthest_m) {
     // What only comes after the walk is for another visit, of the same place: it may stand where it would from the
     // start.
     const double seen_after_s = after_s < config.duration_s ? after_s : 0.0;
-    const auto spot = find_spot(config, box_P, kSize_m, z_m, seen_after_s, plan, random);
+    const auto spot = find_spot(config, box_P, kSize_m, z_m, seen_after_s, farthest_m, plan, random);
     if (spot) {
       plan.take(footprint(spot->centre, kSize_m, kSize_m), z_m + 0.4);
       take_sight(*spot, plan);
@@ -161,18 +166,18 @@ Expected<std::vector<Actor>> add_findings(const PlaceConfig& config, const Align
   };
   const auto no_spot = [] {
     return input_error(
-        "no free spot within 1.5 to 3.2 m of the path and in sight before and after for another finding or distractor: "
+        "no free spot beside the path and in sight before and after for another finding or distractor: "
         "ask for fewer, take another seed or a longer path");
   };
   const SE3& T_W_P = plan.site().T_W_P;
   for (const FindingSpec& spec : config.findings) {
-    const auto spot = spot_after(spec.at_s, 0.75);
+    const auto spot = spot_after(spec.at_s, 0.75, spec.farthest_m);
     if (!spot) return no_spot();
-    actors.push_back(found_object(spec.kind, *spot, ceiling_m, T_W_P, scene, random));
+    actors.push_back(found_object(spec, *spot, ceiling_m, T_W_P, scene, random));
     warm(actors.back(), spec);
   }
   for (const DistractorSpec& spec : config.distractors) {
-    const auto spot = spot_after(spec.at_s, 0.75);
+    const auto spot = spot_after(spec.at_s, 0.75, FindingSpec{}.farthest_m);
     if (!spot) return no_spot();
     actors.push_back(distractor(spec, *spot, T_W_P, scene, random));
   }

@@ -50,6 +50,7 @@ Expected<std::unique_ptr<Place>> make_place(const PlaceConfig& config) {
   auto parts = parts_of(config);
   if (!parts) return std::unexpected(parts.error());
   parts->climate.air_K += config.warmer_K;
+  parts->climate.air_drift_Kph += config.air_drift_Kph;
   return assembled(std::move(*parts));
 }
 

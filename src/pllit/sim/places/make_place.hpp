@@ -22,15 +22,17 @@ enum class PlaceKind {
 
 enum class Light { day, night };  ///< indoors: lamps lit or out
 
-/// Something to be found: hot at a time of its own, on a spot that the seed chooses, in sight of the path and 1.5 to 4
-/// m away from it.
+/// Something to be found: hot at a time of its own, on a spot that the seed chooses, in sight of the path and 1.5 m or
+/// more away from it.
 struct FindingSpec {
-  enum class Kind { on_table, cabinet, pipe };
+  enum class Kind { on_table, cabinet, pipe, box };
   enum class Arrival { heated_in_place, brought_in_hot };
   Kind kind = Kind::on_table;
   Arrival arrival = Arrival::heated_in_place;
-  double at_s = 30.0;  ///< since the start of the motion
-  double by_K = 15.0;  ///< above what it was, or above its surroundings
+  double at_s = 30.0;       ///< since the start of the motion
+  double by_K = 15.0;       ///< above what it was, or above its surroundings
+  double size_m = 0.3;      ///< of each edge of a box, which stands on a table
+  double farthest_m = 3.2;  ///< from the place of the path that it is chosen for
 };
 
 /// What must not be reported: something cold that is put down, or a radiator that has been hot all along.
@@ -49,6 +51,7 @@ struct PlaceConfig {
   double clearance_m = 0.6;             ///< that every surface but the ground keeps from the path; 2.5 suits a car
   Light light = Light::day;
   double warmer_K = 0.0;                ///< the air, and with it everything, than usual
+  double air_drift_Kph = 0.0;           ///< beyond the place's own
   bool bare = false;                    ///< corridors: with nothing that tells a LiDAR one metre from the next
   int people = 0;                       ///< at most; fewer where there is no room 1.5 m off the path
   int cars = 0;                         ///< that drive (street), at most
