@@ -41,12 +41,16 @@ std::vector<Vector3f> in_world(const LidarScan& scan, const Trajectory& poses, c
 class Replay {
  public:
   Replay(const Config& config, const Rig& rig, Trajectory poses)
-      : config_(config), rig_(rig), poses_(std::move(poses)), planes_(config.map), stage_(*rig.camera, {}) {}
+      : config_(config),
+        rig_(rig),
+        poses_(std::move(poses)),
+        planes_(config.map),
+        stage_(*rig.camera, config.thermography) {}
 
   void take(const SensorEvent& event) {
     if (const auto* scan = std::get_if<LidarScan>(&event.data)) scan_ = in_world(*scan, poses_, rig_);
     const auto* image = std::get_if<CameraFrame>(&event.data);
-    if (!image || image->counts.type() != CV_8UC1) return;
+    if (!image) return;
     const Time time = image->time + rig_.camera_delay;
     const auto T_W_I = pose_at(poses_, time, kMaxGap);
     if (!T_W_I) return;
@@ -65,8 +69,8 @@ class Replay {
   void summarise(const std::string& prefix) const {
     std::printf("%ld images, %.2f ms each (p99 %.2f); map %zu voxels, %.1f MB\n", static_cast<long>(ms_.count()),
                 ms_.mean(), ms_.percentile(0.99), stage_.map().size(), static_cast<double>(stage_.map().bytes()) / 1e6);
-    std::printf("used: mapped %d, learned %d, untrusted %d, frozen %d, contradicts %d\n", uses_[0], uses_[1], uses_[2],
-                uses_[3], uses_[4]);
+    std::printf("used: mapped %d, learned %d, untrusted %d, frozen %d, contradicts %d, of another depth %d\n", uses_[0],
+                uses_[1], uses_[2], uses_[3], uses_[4], uses_[5]);
     for (const Anomaly& a : stage_.anomalies())
       std::printf("%s\n", std::format("{} {} {}: at {:.3f} {:.3f} {:.3f} extent {:.2f} {:.2f} {:.2f} m, change {:.1f} "
                                       "(peak {:.1f}) = {:.1f} sigma, {} voxels, {} views, seen {:.2f} to {:.2f} s, "
@@ -112,7 +116,7 @@ class Replay {
   std::vector<Vector3f> scan_;
   std::optional<Time> start_;
   Distribution ms_;
-  std::array<int, 5> uses_{};
+  std::array<int, 6> uses_{};
 };
 
 int run(const std::string& bag, const std::string& tum, const std::string& preset, const std::string& prefix) {
