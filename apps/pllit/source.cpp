@@ -33,8 +33,12 @@ std::optional<TimeUnit> point_time_unit(PointTimeUnit unit) {
 Expected<OpenedSource> open_simulator(const std::string& address, Images images) {
   auto simulation = open_simulation_with_files(address, images);
   if (!simulation) return std::unexpected(simulation.error());
-  OpenedSource opened{
-      .events = nullptr, .rig = simulation->rig(), .truth = simulation->truth(), .scene_json = {}, .name = address};
+  OpenedSource opened{.events = nullptr,
+                      .rig = simulation->rig(),
+                      .sees_heat = simulation->is_thermal(),
+                      .truth = simulation->truth(),
+                      .scene_json = {},
+                      .name = address};
   auto events = std::make_unique<Simulation>(std::move(*simulation));
   opened.scene_json = [&truth = *events, address] { return scene_json(truth.scene_truth(), address).dump(2); };
   opened.events = std::move(events);
@@ -51,6 +55,7 @@ Expected<OpenedSource> open_recording(const std::vector<std::string>& sources, c
   if (!bags) return std::unexpected(bags.error());
   return OpenedSource{.events = std::move(*bags),
                       .rig = make_rig(config.rig),
+                      .sees_heat = config.thermography.unit_choice != UnitChoice::light,
                       .truth = {},
                       .scene_json = {},
                       .name = paths.front().stem().string()};

@@ -17,7 +17,8 @@ namespace pllit::app {
 struct OpenedSource {
   std::unique_ptr<EventSource> events;
   Rig rig;
-  Trajectory truth;  ///< empty for recordings
+  bool sees_heat = true;  ///< the camera, where there is one
+  Trajectory truth;       ///< empty for recordings
   std::function<std::string()>
       scene_json;    ///< what a simulation knows besides, as far as it has run; empty for recordings
   std::string name;  ///< for the session folder

@@ -98,7 +98,12 @@ class SessionRun {
         stop_(std::move(stop)),
         map_(config.map_file_voxel_m, config.map.radius_m),
         alarms_(options.events) {
-    if (source_.rig.camera && config.vision.enabled) thermography_.emplace(*source_.rig.camera, config.thermography);
+    if (source_.rig.camera && source_.sees_heat && config.vision.enabled)
+      thermography_.emplace(*source_.rig.camera, config.thermography);
+    if (!thermography_ && (options.events || options.alarm_exit))
+      spdlog::warn(
+          "there will be no alarms: no images of heat are evaluated (no camera, a visible one, or "
+          "thermal.enabled=false)");
     if (config.loop.enabled) loop_stage_.emplace(config.loop);
   }
 
@@ -201,7 +206,7 @@ class SessionRun {
   std::stop_token stop_;
   MapRecorder map_;
   AlarmTeller alarms_;
-  std::optional<Thermography> thermography_;  // none without a camera
+  std::optional<Thermography> thermography_;  // none without a camera that sees heat
   std::optional<LoopStage> loop_stage_;       // none where loop closing is off
   LoopResult loops_;
   std::optional<SessionHeat> heat_;  // once written

@@ -94,6 +94,20 @@ TEST_F(RunVerb, SaysInWordsWhyARunThatEndsWellIsNotToBeTrusted) {
   EXPECT_THAT(out, AllOf(HasSubstr("good at the end"), HasSubstr("more than a tenth (therefore exit code 3)")));
 }
 
+TEST_F(RunVerb, TellsOfHeatWhereTheCameraSeesHeatAndOfNoneWhereItSeesLight) {
+  const auto told = [&](const std::string& rig) {
+    std::filesystem::remove_all(session_path());
+    const auto done = run({"run", "sim:room?image_rate=2&duration=3&rig=" + rig, "--events", "--out", session_path()});
+    EXPECT_NE(done.exit_code, 2) << done.err;
+    return done.err;
+  };
+  EXPECT_THAT(told("hilti2022"), HasSubstr("there will be no alarms"));
+  EXPECT_FALSE(std::filesystem::exists(session_path() + "/thermal_map.ply"));
+  EXPECT_FALSE(std::filesystem::exists(session_path() + "/anomalies.json"));
+  EXPECT_THAT(told("inspection"), testing::Not(HasSubstr("no alarms")));
+  EXPECT_TRUE(std::filesystem::exists(session_path() + "/thermal_map.ply"));
+}
+
 TEST_F(RunVerb, RefusesWrongInputWithExitCodeTwoAndLeavesNothingBehind) {
   const std::string empty = write("empty.bag", "");
   const std::string text = write("text.bag", "no recording");

@@ -5,7 +5,7 @@ namespace pllit {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kUnits{"auto", "grey", "count", "kelvin"};
+constexpr std::array<std::string_view, 5> kUnits{"auto", "grey", "count", "kelvin", "light"};
 constexpr std::array<std::string_view, 4> kShapes{"auto", "bias", "affine", "curve"};
 
 }  // namespace
@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 4> kShapes{"auto", "bias", "affine", "cur
 void list_anomalies(Section section, ThermographyConfig& config) {
   section.choose(
       "unit", config.unit_choice, kUnits,
-      "What images hold: grey (gain control), raw count, kelvin (radiometric); auto: 8 bits grey, 16 count.");
+      "Of images: grey (gain control), raw count, kelvin, light (no heat is mapped); auto: 8 bits grey, 16 count.");
   section.add(PLLIT_KEY(counts_per_kelvin),
               "Of raw counts, from a calibration of your own: differences are then told in kelvin too; 0: not known.",
               "1/K", {0.0, 1e5});

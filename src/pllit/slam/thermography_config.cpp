@@ -45,6 +45,7 @@ IntensityUnit unit_of(const ThermographyConfig& config, bool eight_bits) {
       return IntensityUnit::count;
     case UnitChoice::kelvin:
       return IntensityUnit::kelvin;
+    case UnitChoice::light:
     case UnitChoice::automatic:
       break;
   }

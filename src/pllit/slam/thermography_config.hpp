@@ -9,8 +9,9 @@
 
 namespace pllit {
 
-/// What the camera's numbers are, or by their depth: 8-bit images are greys, others counts.
-enum class UnitChoice { automatic, grey, count, kelvin };
+/// What the camera's numbers are, or by their depth: 8-bit images are greys, others counts. Light is no heat, whatever
+/// its numbers: thermography is not for it.
+enum class UnitChoice { automatic, grey, count, kelvin, light };
 
 /// AnchorConfig::Shape, or the one that suits the unit.
 enum class AnchorChoice { automatic, bias, affine, curve };
