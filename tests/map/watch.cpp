@@ -90,6 +90,24 @@ TEST(Watch, TakesInAPartThatIsHotByLessThanCountsAlone) {
   EXPECT_FALSE(is_part(true, next, 200.0F)) << "less than half as hot as what it is next to";
 }
 
+/// Whether what shows `third` where it comes into sight, beyond a part of the strip's heat, is one as well.
+bool is_part_of_a_part(float third) {
+  const Vector3d third_W(3.0, 0.225, 0.125);
+  const WatchConfig config{.seam_voxels = 0, .bent_curves = false, .whole_things = true, .part_share = 0.5};
+  return is_watched(
+      [&](int image) {
+        std::vector<Reading> readings{{strip_W, image < 60 ? 100.0F : 300.0F}};
+        if (image >= 75) readings.insert(readings.end(), {{next_W, 210.0F}, {third_W, third}});
+        return readings;
+      },
+      third_W, config);
+}
+
+TEST(Watch, DoesNotFollowHeatThatHalvesFromPartToPart) {
+  EXPECT_TRUE(is_part_of_a_part(205.0F));
+  EXPECT_FALSE(is_part_of_a_part(170.0F)) << "over half as hot as the part beside it, but not as the strip";
+}
+
 /// A wall of which all shows 100, and `later` from the sixth second on, but for the strip, which shows 140 then.
 bool is_watched_on_a_wall(float later) {
   return is_watched([&](int image) {

@@ -26,8 +26,11 @@ bool came_with(const ThermalVoxel& voxel, const WatchedVoxel& hot, const VoxelMo
 std::optional<WatchedVoxel> part_of(const WatchedVoxel& hot, VoxelKey key, const ThermalVoxel& voxel,
                                     const ThermalMap& map, const WatchConfig& config) {
   const VoxelModelConfig& model = map.config().model;
-  const float least = std::max(part_change(model, config), 0.5F * hot.change);
-  WatchedVoxel part{.joined = true, .cool = hot.cool, .position_W = map.position_W(key, voxel)};
+  // By what it began with, not by its neighbour: halving from voxel to voxel ends nowhere.
+  const float seed_change = hot.seed_change > 0.0F ? hot.seed_change : hot.change;
+  const float least = std::max(part_change(model, config), 0.5F * seed_change);
+  WatchedVoxel part{
+      .joined = true, .cool = hot.cool, .seed_change = seed_change, .position_W = map.position_W(key, voxel)};
   part.hits = std::max(static_cast<int>(voxel.images), model.hits) - 1;
   if (config.whole_things && voxel.learned(model)) {
     const float sigma = voxel.sigma(model);

@@ -28,19 +28,20 @@ struct WatchedVoxel {
   bool new_surface = false;  ///< against its surroundings; else against its own past
   bool joined = false;       ///< a part of what is hot: next to it, and hot by less, or without a past of its own
   bool hot = false;
-  bool vacated = false;     ///< seen through since: the surface has left
-  Time since{}, last{};     ///< first and last image of this heat
-  Time cool{};              ///< it was not hot yet
-  Time taken_in{};          ///< of parts: when they became one
-  Time seen{};              ///< last image that showed it, hot or not
-  int hits = 0;             ///< images that showed it
-  int seen_through = 0;     ///< images in a row
-  float normal = 0.0F;      ///< what it should be
-  float sigma = 0.0F;       ///< standard deviation of that
-  float change = 0.0F;      ///< against it, the last one seen hot
-  float peak = 0.0F;        ///< the greatest
-  float sure = 0.0F;        ///< the most that was left of it however the surface lies to the edges of the image
-  std::uint32_t owner = 0;  ///< anomaly that it belongs to; 0: none
+  bool vacated = false;      ///< seen through since: the surface has left
+  Time since{}, last{};      ///< first and last image of this heat
+  Time cool{};               ///< it was not hot yet
+  Time taken_in{};           ///< of parts: when they became one
+  Time seen{};               ///< last image that showed it, hot or not
+  int hits = 0;              ///< images that showed it
+  int seen_through = 0;      ///< images in a row
+  float normal = 0.0F;       ///< what it should be
+  float sigma = 0.0F;        ///< standard deviation of that
+  float change = 0.0F;       ///< against it, the last one seen hot
+  float peak = 0.0F;         ///< the greatest
+  float seed_change = 0.0F;  ///< of parts: of the one that was judged by itself, from which they were reached
+  float sure = 0.0F;         ///< the most that was left of it however the surface lies to the edges of the image
+  std::uint32_t owner = 0;   ///< anomaly that it belongs to; 0: none
   Vector3d position_W = Vector3d::Zero();
 
   double dwell_s() const { return to_seconds(last - since); }
