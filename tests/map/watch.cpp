@@ -108,6 +108,24 @@ TEST(Watch, DoesNotFollowHeatThatHalvesFromPartToPart) {
   EXPECT_FALSE(is_part_of_a_part(170.0F)) << "over half as hot as the part beside it, but not as the strip";
 }
 
+TEST(Watch, LetsOneVoxelVouchForFewOthersOnly) {
+  // A wall as hot as the strip comes into sight beside it, as one that was always hot would where nobody had looked.
+  const auto far_W = [](int columns) { return Vector3d(strip_W + 0.05 * Vector3d(0.0, columns, 0.0)); };
+  const auto is_taken_in = [&](int columns) {
+    const WatchConfig config{
+        .seam_voxels = 0, .bent_curves = false, .whole_things = true, .part_voxels = 1, .parts_of_one = 10};
+    return is_watched(
+        [&](int image) {
+          std::vector<Reading> readings{{strip_W, image < 60 ? 100.0F : 200.0F}};
+          for (int column = 1; image >= 75 && column <= 30; ++column) readings.push_back({far_W(column), 200.0F});
+          return readings;
+        },
+        far_W(columns), config);
+  };
+  EXPECT_TRUE(is_taken_in(5));
+  EXPECT_FALSE(is_taken_in(25));
+}
+
 /// A wall of which all shows 100, and `later` from the sixth second on, but for the strip, which shows 140 then.
 bool is_watched_on_a_wall(float later) {
   return is_watched([&](int image) {

@@ -242,7 +242,7 @@ void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map
   if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
   const int seeds = members.known + members.new_surfaces;
   if (members.own_change < map.model.min_change * seeds || members.own_sigmas < config_.min_sigmas * seeds) return;
-  if (seeds < std::clamp(members.hot / config_.parts_of_one, kFewestSeeds, config_.enough_seeds)) return;
+  if (seeds < std::clamp(members.hot / config_.watch.parts_of_one, kFewestSeeds, config_.enough_seeds)) return;
   const int sure = sure_seeds(watch_, anomaly.id, config_.sure_change * map.model.min_change);
   if (sure < kFewestSeeds || 3 * sure < seeds) return;
   const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;

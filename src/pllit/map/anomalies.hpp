@@ -21,10 +21,8 @@ struct AnomalyConfig {
   /// however they lie to the edges of the image: at its edge a hot thing may be a seam that is seen a few pixels off,
   /// inside it is one.
   double sure_change = 0.67;
-  double join_m = 0.1;  ///< hot voxels in neighbouring cells of this size are one anomaly
-  int parts_of_one =
-      5;  ///< so many voxels to one that is judged by itself: a mistake must not take in a whole cabinet;
-  int enough_seeds = 8;        ///< ... but so many of these are enough
+  double join_m = 0.1;         ///< hot voxels in neighbouring cells of this size are one anomaly
+  int enough_seeds = 8;        ///< so many voxels that are judged by themselves vouch for any number of others
   double place_cell_m = 0.15;  ///< its position is the mean over cells of this size, whatever they hold
   double max_leaving = 0.3;    ///< clusters of which a greater share has left their place are moving: people, vehicles
   double registration_m = 0.02;   ///< how well images and surfaces lie on each other, one sigma

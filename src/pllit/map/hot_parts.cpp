@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
@@ -22,15 +23,42 @@ bool came_with(const ThermalVoxel& voxel, const WatchedVoxel& hot, const VoxelMo
   return !voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits);
 }
 
+/// What is known of an anomaly, or of all that belongs to none yet.
+struct Thing {
+  float heat = 0.0F;  ///< mean change of the voxels that were judged by themselves
+  int seeds = 0, parts = 0;
+};
+using Things = std::map<std::uint32_t, Thing>;  ///< by the anomaly's number; 0: none yet
+
+Things things_of(const Watch& watch) {
+  Things things;
+  for (const auto& [key, watched] : watch) {
+    if (!watched.hot) continue;
+    Thing& thing = things[watched.owner];
+    ++(watched.joined ? thing.parts : thing.seeds);
+    if (!watched.joined) thing.heat += watched.change;
+  }
+  for (auto& [owner, thing] : things) thing.heat /= static_cast<float>(std::max(1, thing.seeds));
+  return things;
+}
+
+/// What the parts of a thing are measured by: what it began with and has become, not the voxel beside them, for halving
+/// from voxel to voxel ends nowhere.
+float heat_of(const WatchedVoxel& hot, const Thing& thing) {
+  const float begun_with = hot.seed_change > 0.0F ? hot.seed_change : hot.change;
+  return hot.owner == 0 ? begun_with : std::max(begun_with, thing.heat);
+}
+
 /// A voxel as a part of a hot one next to it, if it is one.
-std::optional<WatchedVoxel> part_of(const WatchedVoxel& hot, VoxelKey key, const ThermalVoxel& voxel,
+std::optional<WatchedVoxel> part_of(const WatchedVoxel& hot, float heat, VoxelKey key, const ThermalVoxel& voxel,
                                     const ThermalMap& map, const WatchConfig& config) {
   const VoxelModelConfig& model = map.config().model;
-  // By what it began with, not by its neighbour: halving from voxel to voxel ends nowhere.
-  const float seed_change = hot.seed_change > 0.0F ? hot.seed_change : hot.change;
-  const float least = std::max(part_change(model, config), 0.5F * seed_change);
-  WatchedVoxel part{
-      .joined = true, .cool = hot.cool, .seed_change = seed_change, .position_W = map.position_W(key, voxel)};
+  const float least = std::max(part_change(model, config), 0.5F * heat);
+  WatchedVoxel part{.joined = true,
+                    .cool = hot.cool,
+                    .seed_change = heat,
+                    .owner = hot.owner,
+                    .position_W = map.position_W(key, voxel)};
   part.hits = std::max(static_cast<int>(voxel.images), model.hits) - 1;
   if (config.whole_things && voxel.learned(model)) {
     const float sigma = voxel.sigma(model);
@@ -50,10 +78,14 @@ std::optional<WatchedVoxel> part_of(const WatchedVoxel& hot, VoxelKey key, const
   return part;
 }
 
-bool take_in(Watch& watch, const WatchedVoxel& hot, VoxelKey key, const ThermalVoxel& voxel, const WatchInput& input,
-             const WatchConfig& config) {
-  auto part = part_of(hot, key, voxel, input.map, config);
+/// No more parts than a thing's own voxels vouch for.
+bool take_in(Watch& watch, Things& things, const WatchedVoxel& hot, VoxelKey key, const ThermalVoxel& voxel,
+             const WatchInput& input, const WatchConfig& config) {
+  Thing& thing = things[hot.owner];
+  if (config.whole_things && thing.parts >= config.parts_of_one * std::max(1, thing.seeds)) return false;
+  auto part = part_of(hot, heat_of(hot, thing), key, voxel, input.map, config);
   if (!part) return false;
+  ++thing.parts;
   part->taken_in = input.sight.time;
   note_heat(*part, voxel);
   watch.emplace(key, *part);
@@ -73,14 +105,15 @@ bool may_be_part(const ThermalVoxel& voxel, float coolest, float least, const Wa
   return voxel.mean - coolest >= least || (config.whole_things && voxel.last - voxel.mean > least);
 }
 
-bool take_in_beside_hot(Watch& watch, VoxelKey key, const WatchInput& input, const WatchConfig& config) {
+bool take_in_beside_hot(Watch& watch, Things& things, VoxelKey key, const WatchInput& input,
+                        const WatchConfig& config) {
   const ThermalVoxel& voxel = *input.map.find(key);
   bool taken = false;
   for_neighbours(key, config.part_voxels, [&](VoxelKey next) {
     const auto found = taken ? watch.end() : watch.find(next);
     if (found == watch.end() || !found->second.hot) return;
     const WatchedVoxel hot = found->second;
-    taken = take_in(watch, hot, key, voxel, input, config);
+    taken = take_in(watch, things, hot, key, voxel, input, config);
   });
   return taken;
 }
@@ -101,9 +134,10 @@ void take_in_parts(Watch& watch, std::vector<VoxelKey> fresh, const WatchInput& 
   if (watch.empty()) return;
   const float least = part_change(input.map.config().model, config);
   float coolest = coolest_normal(watch);
+  Things things = things_of(watch);
   for (const VoxelKey key : input.seen) {
     if (!may_be_part(*input.map.find(key), coolest, least, config) || watch.contains(key)) continue;
-    if (!take_in_beside_hot(watch, key, input, config)) continue;
+    if (!take_in_beside_hot(watch, things, key, input, config)) continue;
     coolest = std::min(coolest, watch.at(key).normal);
     fresh.push_back(key);
   }
@@ -114,7 +148,7 @@ void take_in_parts(Watch& watch, std::vector<VoxelKey> fresh, const WatchInput& 
     const WatchedVoxel hot = watch.at(key);
     for_neighbours(key, config.part_voxels, [&](VoxelKey next) {
       const ThermalVoxel* voxel = watch.contains(next) ? nullptr : input.map.find(next);
-      if (voxel && voxel->images > 0 && take_in(watch, hot, next, *voxel, input, config)) fresh.push_back(next);
+      if (voxel && voxel->images > 0 && take_in(watch, things, hot, next, *voxel, input, config)) fresh.push_back(next);
     });
   }
 }

@@ -19,6 +19,7 @@ struct WatchConfig {
   bool whole_things = false;     ///< what is next to something hot is a part of it if hot by less; see take_in_parts
   double part_share = 1.0;       ///< of the least change that makes a part ...
   int part_voxels = 1;           ///< ... so near ...
+  int parts_of_one = 5;          ///< so many voxels to one that is judged by itself: a mistake must not take in a wall
   double part_lead_s = 1.0;      ///< ... and known no longer than so before the thing was last seen cool, or came
   double evidence_lead_s = 0.5;  ///< sights so shortly before a surface was first seen do not speak of it
 };

@@ -77,7 +77,7 @@ ThermographyConfig by_unit(ThermographyConfig config, IntensityUnit unit) {
     watch.whole_things = true;
     watch.part_share = 0.5;
     watch.part_voxels = 2;
-    config.anomalies.parts_of_one = 15;
+    watch.parts_of_one = 15;
     config.anomalies.enough_seeds = std::numeric_limits<int>::max();
   }
   return config;
