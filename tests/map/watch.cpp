@@ -113,7 +113,7 @@ TEST(Watch, LetsOneVoxelVouchForFewOthersOnly) {
   const auto far_W = [](int columns) { return Vector3d(strip_W + 0.05 * Vector3d(0.0, columns, 0.0)); };
   const auto is_taken_in = [&](int columns) {
     const WatchConfig config{
-        .seam_voxels = 0, .bent_curves = false, .whole_things = true, .part_voxels = 1, .parts_of_one = 10};
+        .seam_voxels = 0, .bent_curves = false, .whole_things = true, .part_voxels = 1, .parts_of_one = 5};
     return is_watched(
         [&](int image) {
           std::vector<Reading> readings{{strip_W, image < 60 ? 100.0F : 200.0F}};

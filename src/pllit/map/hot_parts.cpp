@@ -78,11 +78,11 @@ std::optional<WatchedVoxel> part_of(const WatchedVoxel& hot, float heat, VoxelKe
   return part;
 }
 
-/// No more parts than a thing's own voxels vouch for.
+/// No more parts than twice what a thing's own voxels vouch for: what would grow further is seen to be none by then.
 bool take_in(Watch& watch, Things& things, const WatchedVoxel& hot, VoxelKey key, const ThermalVoxel& voxel,
              const WatchInput& input, const WatchConfig& config) {
   Thing& thing = things[hot.owner];
-  if (config.whole_things && thing.parts >= config.parts_of_one * std::max(1, thing.seeds)) return false;
+  if (config.whole_things && thing.parts >= 2 * config.parts_of_one * std::max(1, thing.seeds)) return false;
   auto part = part_of(hot, heat_of(hot, thing), key, voxel, input.map, config);
   if (!part) return false;
   ++thing.parts;
