@@ -25,23 +25,37 @@ import sequences
 PICTURES = sequences.ROOT / "build/release/bench/bench_finding_pictures"
 
 
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rows", nargs="+", default=["A1", "A2", "A3"])
+def walks_parser(description, rows):
+    """What every benchmark on walks is told."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rows", nargs="+", default=rows)
     parser.add_argument("--seeds", type=int, default=1, help="so many seeds of each row ...")
     parser.add_argument("--first-seed", type=int, default=1, help="... from this one on")
     parser.add_argument("--name", default="", help="keeps these runs apart from those with other settings")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
-    parser.add_argument("--video", action="store_true", help="8-bit video after gain control instead of raw counts")
     parser.add_argument("--pictures", action="store_true", help="draw each alarm and what was missed into the sessions")
     parser.add_argument("--out", type=pathlib.Path, default=sequences.ROOT / "results" / "heat")
     parser.add_argument("--cache-gb", type=float, default=30.0)
     parser.add_argument("more", nargs="*", help="after --: further arguments of `pllit run`")
+    return parser
+
+
+def arguments():
+    parser = walks_parser(__doc__, ["A1", "A2", "A3"])
+    parser.add_argument("--video", action="store_true", help="8-bit video after gain control instead of raw counts")
     return parser.parse_args()
 
 
+def scored_walks(rows, wanted):
+    """(row, seed, scores) of each walk, in order, as they are done; scores are None where the run failed."""
+    walks = [(row, seed) for row in rows for seed in range(wanted.first_seed, wanted.first_seed + wanted.seeds)]
+    with concurrent.futures.ThreadPoolExecutor(wanted.jobs) as jobs:
+        for (row, seed), found in zip(walks, jobs.map(lambda walk: findings_of(*walk, wanted), walks)):
+            yield row, seed, found
+
+
 def findings_of(row, seed, wanted):
-    """What `pllit eval --findings` says of a walk, and how long it was watched; nothing where the run failed."""
+    """What `pllit eval --findings` says of a walk, its scene, and how long it was watched; nothing where the run failed."""
     bag = sequences.recording(row, seed, wanted, images="agc" if wanted.video else None)
     session = wanted.out / (f"{row['name']}-{seed}" + ("-video" if wanted.video else "") + (f"-{wanted.name}" if wanted.name else ""))
     scene = bag.with_suffix(".scene.json")
@@ -52,7 +66,7 @@ def findings_of(row, seed, wanted):
     scored = subprocess.run([sequences.PLLIT, "eval", "--findings", str(scene), str(session), "--json"], check=True, capture_output=True, text=True)
     if wanted.pictures:
         subprocess.run(sequences.in_environment([str(PICTURES), str(bag), str(session), row["config"], "--scene", str(scene)]), check=True)
-    return json.loads(scored.stdout)["findings"] | {"watched_s": summary["duration_s"]}
+    return json.loads(scored.stdout)["findings"] | {"scene": json.loads(scene.read_text()), "watched_s": summary["duration_s"]}
 
 
 def poisson_bound(count):
@@ -86,13 +100,11 @@ def print_total(results):
 def main():
     wanted = arguments()
     wanted.out.mkdir(parents=True, exist_ok=True)
-    walks = [(row, seed) for row in sequences.table_rows(wanted) for seed in range(wanted.first_seed, wanted.first_seed + wanted.seeds)]
     print("| row (simulated) | seed | found | false alarms | duplicates | position off by m | alarm after s | watched s |\n|---|---|---|---|---|---|---|---|")
     results = []
-    with concurrent.futures.ThreadPoolExecutor(wanted.jobs) as jobs:
-        for (row, seed), found in zip(walks, jobs.map(lambda walk: findings_of(*walk, wanted), walks)):
-            print("| " + " | ".join([row["name"], str(seed)] + (cells_of(found) if found else ["failed"] + [""] * 5)) + " |", flush=True)
-            results += [found] if found else []
+    for row, seed, found in scored_walks(sequences.table_rows(wanted), wanted):
+        print("| " + " | ".join([row["name"], str(seed)] + (cells_of(found) if found else ["failed"] + [""] * 5)) + " |", flush=True)
+        results += [found] if found else []
     if results:
         print_total(results)
 

@@ -9,9 +9,6 @@ Only boxes that an image showed within 10 m after they began count; "near" is th
 runs are kept in results/heat, as those of bench/heat.py are. The plot needs matplotlib, the table nothing but Python's standard library.
 """
 
-import argparse
-import concurrent.futures
-import json
 import pathlib
 import statistics
 
@@ -26,35 +23,17 @@ BINS = {  # of what, in what unit, edges
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rows", nargs="+", default=["S1", "S2"])
-    parser.add_argument("--seeds", type=int, default=10, help="so many seeds of each row ...")
-    parser.add_argument("--first-seed", type=int, default=1, help="... from this one on")
-    parser.add_argument("--name", default="", help="keeps these runs apart from those with other settings")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
+    parser = heat.walks_parser(__doc__, ["S1", "S2"])
+    parser.set_defaults(seeds=10)
     parser.add_argument("--video", action="store_true", help="also the 8-bit video after gain control")
     parser.add_argument("--plot", type=pathlib.Path, help="draw recall into this PNG")
-    parser.add_argument("--out", type=pathlib.Path, default=sequences.ROOT / "results" / "heat")
-    parser.add_argument("--cache-gb", type=float, default=30.0)
-    parser.add_argument("more", nargs="*", help="after --: further arguments of `pllit run`")
     return parser.parse_args()
 
 
-def boxes_of(row, seed, wanted):
-    """Every box of a walk that was to be seen, with what became of it, and the walk's scores; nothing where the run failed."""
-    scores = heat.findings_of(row, seed, wanted)
-    if not scores:
-        return [], None
-    bag = sequences.recording(row, seed, wanted, images="agc" if wanted.video else None)
-    scene = {thing["name"]: thing for thing in json.loads(bag.with_suffix(".scene.json").read_text())["objects"]}
-    return [scene[one["name"]] | one for one in scores["each"]], scores
-
-
-def swept(rows, wanted):
-    walks = [(row, seed) for row in rows for seed in range(wanted.first_seed, wanted.first_seed + wanted.seeds)]
-    with concurrent.futures.ThreadPoolExecutor(wanted.jobs) as jobs:
-        results = list(jobs.map(lambda walk: boxes_of(*walk, wanted), walks))
-    return [box for boxes, _ in results for box in boxes], [scores for _, scores in results if scores]
+def boxes_of(scores):
+    """Every box of a walk that was to be seen, with what became of it."""
+    scene = {thing["name"]: thing for thing in scores["scene"]["objects"]}
+    return [scene[one["name"]] | one for one in scores["each"]]
 
 
 def recall(boxes, key):
@@ -103,14 +82,14 @@ def draw(inputs, file):
 
 def main():
     wanted = arguments()
-    wanted.pictures = False
     wanted.out.mkdir(parents=True, exist_ok=True)
     rows = sequences.table_rows(wanted)
     inputs = {}
     for video in (False, True) if wanted.video else (False,):
         wanted.video = video
         name = "video" if video else "raw counts"
-        inputs[name], scores = swept(rows, wanted)
+        scores = [found for _, _, found in heat.scored_walks(rows, wanted) if found]
+        inputs[name] = [box for walk in scores for box in boxes_of(walk)]
         print_sweep(name, inputs[name], scores)
     if wanted.plot:
         draw(inputs, wanted.plot)
