@@ -46,43 +46,36 @@ double number(const std::string& text) {
   return value;
 }
 
-/// All frames, with the reasons for their states.
-struct HealthRecord {
-  std::vector<HealthSample> frames;
-  std::vector<std::string> reasons;
-};
-
 /// Rows that were not written whole are left out.
-HealthRecord record_of(const CsvTable& health) {
+std::vector<HealthSample> frames_of(const CsvTable& health) {
   const auto column = [&](const char* name) {
     return static_cast<std::size_t>(std::ranges::find(health.columns, name) - health.columns.begin());
   };
   const std::size_t time = column("time_s"), state = column("state"), reasons = column("reasons"),
                     matched = column("inliers"), speed = column("speed_mps"), x = column("sigma_x_m"),
                     y = column("sigma_y_m"), z = column("sigma_z_m");
-  HealthRecord record;
+  std::vector<HealthSample> frames;
   for (const auto& row : health.rows) {
     if (std::max({time, state, reasons, matched, speed, x, y, z}) >= row.size()) continue;
-    record.frames.push_back({.time_s = number(row[time]),
-                             .state = row[state],
-                             .sigma_m = std::hypot(number(row[x]), number(row[y]), number(row[z])),
-                             .matched = number(row[matched]),
-                             .speed_mps = number(row[speed])});
-    record.reasons.push_back(row[reasons]);
+    frames.push_back({.time_s = number(row[time]),
+                      .state = row[state],
+                      .reasons = row[reasons],
+                      .sigma_m = std::hypot(number(row[x]), number(row[y]), number(row[z])),
+                      .matched = number(row[matched]),
+                      .speed_mps = number(row[speed])});
   }
-  return record;
+  return frames;
 }
 
 /// Frames in a row that were in one state that is not good.
-std::vector<DoubtfulStretch> doubts_of(const HealthRecord& record) {
+std::vector<DoubtfulStretch> doubts_of(const std::vector<HealthSample>& frames) {
   std::vector<DoubtfulStretch> doubts;
   bool open = false;
-  for (std::size_t i = 0; i < record.frames.size(); ++i) {
-    const HealthSample& frame = record.frames[i];
+  for (const HealthSample& frame : frames) {
     if (open) doubts.back().to_s = frame.time_s;
     open = open && doubts.back().state == frame.state;
     if (open || frame.state == "good") continue;
-    doubts.push_back({frame.time_s, frame.time_s, frame.state, record.reasons[i]});
+    doubts.push_back({frame.time_s, frame.time_s, frame.state, frame.reasons});
     open = true;
   }
   return doubts;
@@ -135,12 +128,12 @@ Expected<void> write_report(SessionWriter& session, const nlohmann::ordered_json
   constexpr std::size_t kMapPoints = 500000;  // more a plan does not show
   auto whole = open_session(session.folder(), kMapPoints);
   if (!whole) return std::unexpected(whole.error());
-  HealthRecord record = record_of(whole->health);
+  std::vector<HealthSample> frames = frames_of(whole->health);
   ReportContent content{.title = "Inspection " + whole->folder.filename().string(),
                         .trajectory = std::move(whole->trajectory),
                         .map = std::move(whole->map),
-                        .doubts = doubts_of(record),
-                        .health = std::move(record.frames),
+                        .doubts = doubts_of(frames),
+                        .health = std::move(frames),
                         .severity = severity};
   if (heat) {
     const ThermographyConfig& config = heat->stage.config();

@@ -81,7 +81,8 @@ TEST(Report, SaysWhatWasNotSeenAndWhenItWasInDoubt) {
 TEST(Report, DrawsHowLocalisationWentWithTheWorstOfEachMoment) {
   ReportContent content = visit();
   for (int i = 0; i < 5000; ++i)
-    content.health.push_back({.time_s = 1.7e9 + 0.1 * i, .state = "good", .sigma_m = 0.01, .matched = 400.0});
+    content.health.push_back(
+        {.time_s = 1.7e9 + 0.1 * i, .state = "good", .reasons = {}, .sigma_m = 0.01, .matched = 400.0});
   EXPECT_THAT(report_html(content, run_json()), Not(HasSubstr("#c22\"/>"))) << "never lost";
   content.health[3000].state = "lost";
   content.health[3000].sigma_m = 3.5;

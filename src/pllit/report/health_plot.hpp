@@ -10,6 +10,7 @@ namespace pllit {
 struct HealthSample {
   double time_s = 0.0;  ///< since 1970
   std::string state;    ///< as health.csv says it: initialising, good, degraded, lost
+  std::string reasons;  ///< likewise; empty when good
   double sigma_m = 0.0, matched = 0.0, speed_mps = 0.0;
 };
 

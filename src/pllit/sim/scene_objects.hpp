@@ -12,7 +12,7 @@
 namespace pllit {
 
 /// In the order in which a place makes actors of them. Hot boxes are 0.1 to 0.5 m large, 5 to 40 K warm, up to 7 m off
-/// the path, and begin in the second quarter of the time until most inspections end.
+/// the path, and begin between the 25th and the 50th second.
 std::vector<FindingSpec> findings_of(const SimConfig& config);
 /// Beside a finding that is asked for by name.
 std::vector<DistractorSpec> distractors_of(const SimConfig& config);

@@ -58,8 +58,7 @@ constexpr double kReach_m = 150.0;
 SimConfig::RigName rig_for(const SimConfig& config) {
   if (config.rig) return *config.rig;
   if (config.scene == SceneKind::street || config.scene == SceneKind::field) return SimConfig::RigName::ntu4dradlm;
-  const bool inspected =
-      config.scene == SceneKind::plant || config.finding != SimConfig::Finding::none || config.hot_boxes > 0;
+  const bool inspected = config.scene == SceneKind::plant || !findings_of(config).empty();
   return inspected ? SimConfig::RigName::inspection : SimConfig::RigName::hilti2022;
 }
 
