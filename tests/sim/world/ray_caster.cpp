@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
 #include <numeric>
 #include <thread>
 
@@ -44,6 +46,12 @@ void expect_same(const Hit& hit, const EveryTriangle::Nearest& expected) {
   }
 }
 
+bool same(const Hit& a, const Hit& b) {
+  if (!a || !b) return !a && !b;
+  return a.range_m == b.range_m && a.normal_W == b.normal_W && a.p_own == b.p_own && a.surface == b.surface &&
+         a.warmer_K == b.warmer_K && a.actor == b.actor;
+}
+
 class RandomWorlds : public ::testing::TestWithParam<int> {};
 
 TEST_P(RandomWorlds, EmbreeFindsWhatTryingEveryTriangleFinds) {
@@ -68,6 +76,20 @@ TEST_P(RandomWorlds, EmbreeFindsWhatTryingEveryTriangleFinds) {
   }
   EXPECT_GT(hits, 800);
   EXPECT_GT(on_actors, 3);
+}
+
+TEST_P(RandomWorlds, ManyRaysAtOnceHitWhatEachHitsAlone) {
+  const Vector3d middle_W(3017.3, -2044.7, 12.25);
+  const ReadyPlace place = random_place(static_cast<std::uint64_t>(GetParam()), middle_W);
+  Random random(static_cast<std::uint64_t>(GetParam()), 2);
+  RayCaster caster(place, kReach_m);
+  caster.move_to(middle_W, 4.2);
+  for (const int count : {0, 1, 8, 403}) {
+    const std::vector<Ray> rays = random_rays(random, middle_W, count);
+    std::vector<Hit> hits(rays.size());
+    caster.cast(rays, hits);
+    for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(same(hits[i], caster.cast(rays[i]))) << i;
+  }
 }
 
 TEST_P(RandomWorlds, TilesMadeAndDroppedOnTheWayGiveTheHitsOfEverythingAtOnce) {
@@ -167,6 +189,21 @@ TEST(RayCaster, BlockedAgreesWithTheNearestHitOnTheWay) {
   }
   EXPECT_GT(blocked, 100);
   EXPECT_LT(blocked, 900);
+}
+
+TEST(RayCaster, ManyPointsAtOnceAreBlockedLikeEachAlone) {
+  const ReadyPlace place = random_place(3, Vector3d::Zero());
+  RayCaster caster(place, kReach_m);
+  caster.move_to(Vector3d::Zero(), 3.0);
+  Random random(4);
+  const Vector3d way_W(9.0, -7.0, 3.0);
+  std::vector<Vector3d> from_W;
+  for (int i = 0; i < 203; ++i) from_W.emplace_back(random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0), 1.0);
+  const auto answers = std::make_unique<bool[]>(from_W.size());
+  caster.blocked(from_W, way_W, {answers.get(), from_W.size()});
+  for (std::size_t i = 0; i < from_W.size(); ++i)
+    EXPECT_EQ(answers[i], caster.blocked(from_W[i], from_W[i] + way_W)) << i;
+  EXPECT_GT(std::count(answers.get(), answers.get() + from_W.size(), true), 20);
 }
 
 TEST(RayCaster, RaysATenthOfAMillimetreAroundSeamsDoNotLeaveAClosedRoom) {

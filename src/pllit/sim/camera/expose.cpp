@@ -94,8 +94,8 @@ void sample(const Job& job, std::span<const Pixel> pixels, std::span<const Vecto
     const Vector3d phase = job.phase + column * per_column + row * per_row;
     for (const Vector3d& place : pattern) buffers.rays.push_back(sample_ray(job, place + phase, column, row));
   }
-  buffers.hits.clear();
-  for (const Ray& ray : buffers.rays) buffers.hits.push_back(job.caster.cast(ray));
+  buffers.hits.resize(buffers.rays.size());
+  job.caster.cast(buffers.rays, buffers.hits);
   buffers.values.resize(buffers.rays.size());
   job.shade(buffers.rays, buffers.hits, pattern.size(), buffers.values);
 }

@@ -1,6 +1,7 @@
 #include "pllit/sim/camera/patches.hpp"
 
 #include <cmath>
+#include <memory>
 
 namespace pllit {
 namespace {
@@ -28,12 +29,14 @@ Patches::Patches(std::span<const Ray> rays, std::span<const Hit> hits, std::size
 
 void Patches::seek_sun_of(const std::vector<std::size_t>& chosen, const RayCaster& caster, const Vector3d& to_sun_W) {
   constexpr double far_m = 150.0, off_m = 0.01;
+  std::vector<Vector3d> from_W;
+  for (const std::size_t i : chosen)
+    from_W.emplace_back(rays_[i].origin_W + hits_[i].range_m * rays_[i].direction_W +
+                        off_m * hits_[i].normal_W.cast<double>());
+  const auto in_shade = std::make_unique<bool[]>(chosen.size());
+  caster.blocked(from_W, far_m * to_sun_W, {in_shade.get(), chosen.size()});
   in_sun_.assign(hits_.size(), 0);
-  for (const std::size_t i : chosen) {
-    const Vector3d p_W =
-        rays_[i].origin_W + hits_[i].range_m * rays_[i].direction_W + off_m * hits_[i].normal_W.cast<double>();
-    in_sun_[i] = !caster.blocked(p_W, p_W + far_m * to_sun_W);
-  }
+  for (std::size_t k = 0; k < chosen.size(); ++k) in_sun_[chosen[k]] = !in_shade[k];
 }
 
 void Patches::seek_mirrored_of(const std::vector<std::size_t>& chosen, const RayCaster& caster) {

@@ -1,6 +1,7 @@
 #include "pllit/sim/world/ray_caster.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <utility>
@@ -74,6 +75,21 @@ RTCRay embree_ray(const Vector3d& origin, const Vector3d& direction, float near_
           .flags = 0};
 }
 
+/// So many rays side by side.
+constexpr std::size_t kPacket = 8;
+
+void put(RTCRay8& packet, std::size_t lane, const RTCRay& ray) {
+  packet.org_x[lane] = ray.org_x;
+  packet.org_y[lane] = ray.org_y;
+  packet.org_z[lane] = ray.org_z;
+  packet.tnear[lane] = ray.tnear;
+  packet.dir_x[lane] = ray.dir_x;
+  packet.dir_y[lane] = ray.dir_y;
+  packet.dir_z[lane] = ray.dir_z;
+  packet.tfar[lane] = ray.tfar;
+  packet.mask[lane] = ray.mask;
+}
+
 }  // namespace
 
 struct RayCaster::Scene {
@@ -84,6 +100,8 @@ struct RayCaster::Scene {
   void pose_actors(double t_s);
   void attach(Part& part);
   void detach(Part& part);
+  RTCRay going(const Ray& ray) const;
+  RTCRay between(const Vector3d& from_W, const Vector3d& way_W) const;
   Hit hit_of(const Ray& ray, float range_m, const Vector3f& normal_O, unsigned slot_hit, unsigned triangle) const;
 
   const Place& world;
@@ -189,10 +207,19 @@ void RayCaster::move_to(const Vector3d& p_W, double t_s) {
   if (std::exchange(scene_->changed, false)) commit(scene_->device.get(), scene_->top.get());
 }
 
+RTCRay RayCaster::Scene::going(const Ray& ray) const {
+  return embree_ray(ray.origin_W - centre_W, ray.direction_W, 0.0F, static_cast<float>(reach_m));
+}
+
+/// From a little behind one point to a little before the other.
+RTCRay RayCaster::Scene::between(const Vector3d& from_W, const Vector3d& way_W) const {
+  const double length_m = way_W.norm();
+  return embree_ray(from_W - centre_W, way_W / length_m, kBlockedMargin_m,
+                    static_cast<float>(length_m) - kBlockedMargin_m);
+}
+
 Hit RayCaster::cast(const Ray& ray) const {
-  RTCRayHit answer{
-      .ray = embree_ray(ray.origin_W - scene_->centre_W, ray.direction_W, 0.0F, static_cast<float>(scene_->reach_m)),
-      .hit = {}};
+  RTCRayHit answer{.ray = scene_->going(ray), .hit = {}};
   answer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene_->top.get(), &answer);
   const RTCHit& hit = answer.hit;
@@ -200,14 +227,46 @@ Hit RayCaster::cast(const Ray& ray) const {
   return scene_->hit_of(ray, answer.ray.tfar, {hit.Ng_x, hit.Ng_y, hit.Ng_z}, hit.instID[0], hit.primID);
 }
 
+void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
+  for (std::size_t begin = 0; begin < rays.size(); begin += kPacket) {
+    const std::size_t count = std::min(kPacket, rays.size() - begin);
+    alignas(32) std::array<int, kPacket> valid{};
+    RTCRayHit8 answer{};
+    for (std::size_t i = 0; i < count; ++i) {
+      valid[i] = -1;
+      put(answer.ray, i, scene_->going(rays[begin + i]));
+      answer.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(valid.data(), scene_->top.get(), &answer);
+    const RTCHit8& hit = answer.hit;
+    for (std::size_t i = 0; i < count; ++i)
+      hits[begin + i] = hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
+                            ? Hit{}
+                            : scene_->hit_of(rays[begin + i], answer.ray.tfar[i],
+                                             {hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]}, hit.instID[0][i], hit.primID[i]);
+  }
+}
+
 bool RayCaster::blocked(const Vector3d& from_W, const Vector3d& to_W) const {
-  const Vector3d way_W = to_W - from_W;
-  const double length_m = way_W.norm();
-  RTCRay ray = embree_ray(from_W - scene_->centre_W, way_W / length_m, kBlockedMargin_m,
-                          static_cast<float>(length_m) - kBlockedMargin_m);
+  RTCRay ray = scene_->between(from_W, to_W - from_W);
   if (ray.tfar <= ray.tnear) return false;
   rtcOccluded1(scene_->top.get(), &ray);
   return ray.tfar < 0.0F;
+}
+
+void RayCaster::blocked(std::span<const Vector3d> from_W, const Vector3d& way_W, std::span<bool> answers) const {
+  for (std::size_t begin = 0; begin < from_W.size(); begin += kPacket) {
+    const std::size_t count = std::min(kPacket, from_W.size() - begin);
+    alignas(32) std::array<int, kPacket> valid{};
+    RTCRay8 rays{};
+    for (std::size_t i = 0; i < count; ++i) {
+      const RTCRay ray = scene_->between(from_W[begin + i], way_W);
+      valid[i] = ray.tfar > ray.tnear ? -1 : 0;
+      put(rays, i, ray);
+    }
+    rtcOccluded8(valid.data(), scene_->top.get(), &rays);
+    for (std::size_t i = 0; i < count; ++i) answers[begin + i] = valid[i] != 0 && rays.tfar[i] < 0.0F;
+  }
 }
 
 }  // namespace pllit

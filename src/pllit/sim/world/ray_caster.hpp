@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "pllit/sim/world/place.hpp"
 
@@ -39,8 +40,12 @@ class RayCaster {
   void move_to(const Eigen::Vector3d& p_W, double t_s);
 
   Hit cast(const Ray& ray) const;
+  /// Many at once, the same hits to the bit; faster where neighbours in the list run side by side.
+  void cast(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// Whether anything lies between two points (1 mm at either end apart).
   bool blocked(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const;
+  /// The same of many points, each and the one `way_W` from it.
+  void blocked(std::span<const Eigen::Vector3d> from_W, const Eigen::Vector3d& way_W, std::span<bool> answers) const;
 
  private:
   struct Scene;

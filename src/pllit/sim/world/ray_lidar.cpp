@@ -141,10 +141,10 @@ class Scanner {
       }
     }
     for (std::size_t row = 0; row < order_.size(); ++row) {
-      const std::size_t offset = row * batch_.shots;
-      for (std::size_t i = offset + begin; i < offset + end; ++i) {
+      const std::size_t offset = row * batch_.shots + begin, count = end - begin;
+      run_.caster.cast(std::span(batch_.rays).subspan(offset, count), std::span(batch_.hits).subspan(offset, count));
+      for (std::size_t i = offset; i < offset + count; ++i) {
         const Ray& ray = batch_.rays[i];
-        batch_.hits[i] = run_.caster.cast(ray);
         batch_.points_W[i] = ray.origin_W + static_cast<double>(batch_.hits[i].range_m) * ray.direction_W;
       }
     }
