@@ -142,6 +142,7 @@ void run_matcher(const Matcher& matcher, const std::vector<View>& views, const s
     return features;
   };
   std::mt19937 engine(7);
+  Arena arena(1);
   Keyframe keyframe{
       .id = 0, .time = views[0].time, .T_W_C = views[0].T_W_C, .features = strongest(extracted(video[0]), kPoints)};
   const auto surfaces_W = surfaces_of(keyframe.features.points_px, views[0], world);
@@ -153,7 +154,7 @@ void run_matcher(const Matcher& matcher, const std::vector<View>& views, const s
     {
       const Features now = extracted(video[k]);
       const auto begin = std::clock();
-      const Tracks tracks = match_to_keyframes(now, T_W_C, {&keyframe, 1}, world.camera(), matcher.config);
+      const Tracks tracks = match_to_keyframes(now, T_W_C, {&keyframe, 1}, world.camera(), matcher.config, arena);
       timing.seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
       ++timing.calls;
       for (const PointMatch& match : tracks.points)

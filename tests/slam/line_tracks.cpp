@@ -43,6 +43,7 @@ Features features_at(double x, bool swapped) {
 
 TEST(LineTracks, FollowALineFromKeyframeToKeyframeUntilItIsOneOfTheMap) {
   Random random(91);
+  Arena arena(2);
   LineTracks lines({.min_sightings = 4});
   std::vector<bool> swapped;  // of the keyframes
   std::vector<Keyframe> keyframes;
@@ -62,7 +63,7 @@ TEST(LineTracks, FollowALineFromKeyframeToKeyframeUntilItIsOneOfTheMap) {
       EXPECT_LT((keyframes[0].T_W_C * line.line_K.axis).distance_m(right_one ? post_a : other_a), 0.02);
     }
     const DepthImage depths(wall(random), camera_at(x).inverse(), test::thermal_camera(), {});
-    lines.add(now, tracks, depths, camera_at(x), test::thermal_camera());
+    lines.add(now, tracks, depths, camera_at(x), test::thermal_camera(), arena);
     if (image % 2 == 0) {
       lines.keep();
       swapped.push_back(swap);
@@ -81,10 +82,11 @@ TEST(LineTracks, FollowALineFromKeyframeToKeyframeUntilItIsOneOfTheMap) {
 
 TEST(LineTracks, BeginAnewWithoutMatches) {
   Random random(92);
+  Arena arena(2);
   LineTracks lines({.min_sightings = 3});
   for (int image = 0; image < 6; ++image) {
     const DepthImage depths(wall(random), camera_at(0.0).inverse(), test::thermal_camera(), {});
-    lines.add(features_at(0.0, false), {}, depths, camera_at(0.0), test::thermal_camera());
+    lines.add(features_at(0.0, false), {}, depths, camera_at(0.0), test::thermal_camera(), arena);
   }
   EXPECT_TRUE(lines.map().lines().empty());
 }

@@ -44,10 +44,14 @@ std::vector<LineObservation> LineTracks::observed(const Features& now, const Tra
 }
 
 void LineTracks::add(const Features& now, const Tracks& tracks, const DepthImage& depths, const SE3& T_W_C,
-                     const Camera& camera) {
+                     const Camera& camera, Arena& arena) {
+  std::vector<LineSighting> sightings(now.lines.size());
+  arena.for_chunks(sightings.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      sightings[i] = {.T_W_C = T_W_C, .points = points_along(now.lines[i], depths, camera)};
+  });
   now_ = tracks_of(now, tracks);
-  for (std::size_t i = 0; i < now_.size(); ++i)
-    now_[i] = map_.observe(now_[i], {.T_W_C = T_W_C, .points = points_along(now.lines[i], depths, camera)});
+  for (std::size_t i = 0; i < now_.size(); ++i) now_[i] = map_.observe(now_[i], std::move(sightings[i]));
   map_.end_image(T_W_C.translation());
 }
 

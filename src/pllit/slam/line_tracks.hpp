@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "pllit/base/arena.hpp"
 #include "pllit/map/line_map.hpp"
 #include "pllit/thermal/depth.hpp"
 #include "pllit/thermal/observations.hpp"
@@ -22,7 +23,8 @@ class LineTracks {
   std::vector<LineObservation> observed(const Features& now, const Tracks& tracks,
                                         std::span<const Keyframe> keyframes) const;
   /// Sightings of the image's lines, by the pose that the filter left it.
-  void add(const Features& now, const Tracks& tracks, const DepthImage& depths, const SE3& T_W_C, const Camera& camera);
+  void add(const Features& now, const Tracks& tracks, const DepthImage& depths, const SE3& T_W_C, const Camera& camera,
+           Arena& arena);
   /// The image of the last add() is the window's newest keyframe.
   void keep() { keyframes_.push_back(now_); }
   /// The keyframe at this index has left the window.

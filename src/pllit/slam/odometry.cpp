@@ -109,7 +109,7 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
   if (look) {
     vision_->add_points(frame.cloud.points_I, estimate_.mean.T_W_I(), packet.end);
     const Vector3d rate_I = motion.path.nodes.back().omega_I;
-    const auto refined = vision_->refine(*packet.image, {estimate_, rate_I, open}, facts.image, clock);
+    const auto refined = vision_->refine(*packet.image, {estimate_, rate_I, open}, facts.image, clock, arena_);
     if (!refined) return std::unexpected(refined.error());
     T_W_scan = refined->mean.T_W_I() * estimate_.mean.T_W_I().inverse() * T_W_scan;
     estimate_ = *refined;
@@ -119,6 +119,7 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     frame.mount = {vision_->mount(), vision_->mount_covariance()};
     const Exposure exposed = exposure(estimate_.mean, vision_->mount().delay_s, rate_I);
     frame.T_I_C = estimate_.mean.T_W_I().inverse() * exposed.T_W_I * vision_->mount().T_I_C;
+    vision_->learn(arena_);
   }
   facts.image.holds = to_seconds(packet.end - last_held_) < config_.health.silent_degraded_s;
   if (packet.scan) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <format>
+#include <utility>
 
 #include "pllit/thermal/network_extractor.hpp"
 
@@ -83,6 +84,7 @@ void Vision::let_clocks_drift(Time time) {
 bool Vision::is_calibrated(const Look& look) const { return config_.photometric && look.counts.depth() == CV_8U; }
 
 void Vision::add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time) {
+  finish_learning();
   while (!points_.empty() && to_seconds(time - points_.front().time) > config_.depth_window_s) points_.pop_front();
   const SE3 T_C_I = mount().T_I_C.inverse();
   const Eigen::Matrix3f R_C_I = T_C_I.rotation().cast<float>();
@@ -97,9 +99,10 @@ void Vision::add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I,
   points_.push_back(std::move(seen));
 }
 
-Expected<Estimate> Vision::refine(const CameraFrame& image, const Moment& moment, ImageFacts& facts,
-                                  StageClock& clock) {
+Expected<Estimate> Vision::refine(const CameraFrame& image, const Moment& moment, ImageFacts& facts, StageClock& clock,
+                                  Arena& arena) {
   assert(looking_.valid());
+  finish_learning();
   auto look = looking_.get();
   clock.charge(Stage::features);
   facts.seen = true;
@@ -113,7 +116,7 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Moment& moment
   let_clocks_drift(image.time);
   const SE3 T_W_C = exposure(moment.prior.mean, mount().delay_s, moment.rate_I).T_W_I * mount().T_I_C;
   for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].T_W_C = clones_.poses[i] * mount().T_I_C;
-  const Tracks tracks = match_to_keyframes(look->features, T_W_C, keyframes_, *rig_.camera, config_.matching);
+  Tracks tracks = match_to_keyframes(look->features, T_W_C, keyframes_, *rig_.camera, config_.matching, arena);
   facts.matches = static_cast<int>(tracks.points.size());
   facts.anchored = static_cast<int>(std::ranges::count_if(tracks.points, [](const auto& m) { return m.line_px >= 0; }));
   clock.charge(Stage::track);
@@ -126,13 +129,31 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Moment& moment
   clock.charge(Stage::photometric);
 
   const Estimate posterior = update(moment, observe(look->features, tracks, moment), facts);
-  extend_maps(std::move(*look), tracks, posterior, exposure(posterior.mean, mount().delay_s, moment.rate_I));
+  const Exposure exposed = exposure(posterior.mean, mount().delay_s, moment.rate_I);
+  lesson_ = Lesson{std::move(*look), std::move(tracks), posterior, exposed};
   clock.charge(Stage::thermal);
   return posterior;
 }
 
+void Vision::learn(Arena& arena) {
+  if (!lesson_) return;
+  learning_ = std::async(std::launch::async, [this, &arena, lesson = *std::exchange(lesson_, std::nullopt)] {
+    extend_maps(lesson, arena);
+  });
+}
+
+void Vision::finish_learning() {
+  if (learning_.valid()) learning_.get();
+}
+
+void Vision::carry(const Matrix18& J_now_before) {
+  finish_learning();
+  pllit::carry(clones_, J_now_before);
+}
+
 /// Sightings of lines, and a keyframe, where it is time for them: both need the depth of what the image shows.
-void Vision::extend_maps(Look look, const Tracks& tracks, const Estimate& posterior, const Exposure& exposed) {
+void Vision::extend_maps(const Lesson& lesson, Arena& arena) {
+  const auto& [look, tracks, posterior, exposed] = lesson;
   const Time time = posterior.mean.time;
   const bool keyframe = wants_keyframe(tracks, keyframes_, look.features, time, rig_.camera->width, config_.keyframes);
   const bool lines = config_.residuals.lines && (keyframe || time - lines_seen_ >= config_.line_spacing);
@@ -140,12 +161,12 @@ void Vision::extend_maps(Look look, const Tracks& tracks, const Estimate& poster
   const SE3 T_W_C = exposed.T_W_I * mount().T_I_C;
   const DepthImage depths = depths_at(T_W_C);
   if (lines) {
-    lines_.add(look.features, tracks, depths, T_W_C, *rig_.camera);
+    lines_.add(look.features, tracks, depths, T_W_C, *rig_.camera, arena);
     lines_seen_ = time;
   }
   if (!keyframe) return;
   if (std::ssize(keyframes_) >= config_.keyframes.most) drop_keyframe(expendable(tracks, keyframes_));
-  keep(std::move(look), depths, posterior, exposed);
+  keep(lesson, depths, arena);
 }
 
 ImageObservations Vision::observe(const Features& features, const Tracks& tracks, const Moment& moment) const {
@@ -205,16 +226,20 @@ Estimate Vision::update(const Moment& moment, const ImageObservations& observati
   return result.posterior;
 }
 
-void Vision::keep(Look look, const DepthImage& depths, const Estimate& posterior, const Exposure& exposed) {
+void Vision::keep(const Lesson& lesson, const DepthImage& depths, Arena& arena) {
+  const auto& [look, tracks, posterior, exposed] = lesson;
   Keyframe keyframe{.id = next_id_++, .time = posterior.mean.time, .T_W_C = exposed.T_W_I * mount().T_I_C};
   keyframe.features = strongest(look.features, config_.keyframes.most_points);
+  const std::vector<Eigen::Vector2f>& pixels_px = keyframe.features.points_px;
+  keyframe.depths.resize(pixels_px.size());
+  arena.for_chunks(pixels_px.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) keyframe.depths[i] = depths.at(pixels_px[i].cast<double>());
+  });
   std::vector<Vector3d> points_K;
-  for (const Eigen::Vector2f& pixel : keyframe.features.points_px) {
-    keyframe.depths.push_back(depths.at(pixel.cast<double>()));
-    if (const auto& found = keyframe.depths.back())
-      points_K.push_back(found->range_m * rig_.camera->ray(pixel.cast<double>()));
-  }
-  const cv::Mat around = look.around.rowRange(0, static_cast<int>(keyframe.features.points_px.size()));
+  for (std::size_t i = 0; i < pixels_px.size(); ++i)
+    if (const auto& found = keyframe.depths[i])
+      points_K.push_back(found->range_m * rig_.camera->ray(pixels_px[i].cast<double>()));
+  const cv::Mat around = look.around.rowRange(0, static_cast<int>(pixels_px.size()));
   set_greys(keyframe, around, look.counts.depth() == CV_8U ? chain_.curve : GreyCurve{});
   add_clone(clones_, posterior, exposed);
   clones_.covariance.bottomRightCorner<6, 6>() +=
@@ -237,6 +262,7 @@ void Vision::drop_keyframe(std::size_t index) {
 }
 
 void Vision::restart() {
+  finish_learning();
   keyframes_.clear();
   clones_ = without_poses(mount(), clones_.mount_covariance());
   lines_.restart();

@@ -34,13 +34,17 @@ class Vision {
   /// Begins to look for features in a thread of its own; refine() with the same image comes next.
   void look_at(const CameraFrame& image);
   /// The state's error has become J times what it was, plus what keyframes know nothing of.
-  void carry(const Matrix18& J_now_before) { pllit::carry(clones_, J_now_before); }
+  void carry(const Matrix18& J_now_before);
   /// LiDAR points in I at `time`: where features will find their depth.
   void add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time);
   /// The state after this image; the prior where it is of no use. Where the scan knows the pose to millimetres, what a
   /// camera adds is mostly the error of its calibration, so it moves the state along what the scan has left open only;
   /// its own mount it refines always. Errors are the extractor's.
-  Expected<Estimate> refine(const CameraFrame& image, const Moment& moment, ImageFacts& facts, StageClock& clock);
+  Expected<Estimate> refine(const CameraFrame& image, const Moment& moment, ImageFacts& facts, StageClock& clock,
+                            Arena& arena);
+  /// Begins, in a thread of its own, to extend keyframes and lines by the image just refined; what comes next waits for
+  /// it, but for look_at(). The arena must live as long.
+  void learn(Arena& arena);
   /// Forgets what was built on poses that are not to be trusted any more.
   void restart();
 
@@ -61,8 +65,16 @@ class Vision {
   ImageObservations observe(const Features& features, const Tracks& tracks, const Moment& moment) const;
   DepthImage depths_at(const SE3& T_W_C) const;
   Estimate update(const Moment& moment, const ImageObservations& observations, ImageFacts& facts);
-  void extend_maps(Look look, const Tracks& tracks, const Estimate& posterior, const Exposure& exposed);
-  void keep(Look look, const DepthImage& depths, const Estimate& posterior, const Exposure& exposed);
+  /// What a refined image leaves to be learned.
+  struct Lesson {
+    Look look;
+    Tracks tracks;
+    Estimate posterior;
+    Exposure exposed;
+  };
+  void finish_learning();
+  void extend_maps(const Lesson& lesson, Arena& arena);
+  void keep(const Lesson& lesson, const DepthImage& depths, Arena& arena);
   bool is_calibrated(const Look& look) const;
   void let_clocks_drift(Time time);
   void drop_keyframe(std::size_t index);
@@ -87,6 +99,8 @@ class Vision {
   std::deque<SeenPoints> points_;
   std::uint32_t next_id_ = 0;
   double correction_ = 1.0;  ///< running mean
+  std::optional<Lesson> lesson_;
+  std::future<void> learning_;  ///< last, so that it ends before the rest goes
 };
 
 /// Nothing where the rig has no camera or the configuration wants none. Errors: the extractor's.

@@ -1,7 +1,7 @@
 #include "pllit/thermal/classical_extractor.hpp"
 
 #include <format>
-#include <iterator>
+#include <future>
 
 #include "pllit/thermal/patch_descriptor.hpp"
 
@@ -14,6 +14,8 @@ Expected<Features> ClassicalExtractor::extract(const cv::Mat& grey) {
         std::format("features need an 8-bit image of one channel and at least {0} x {0} pixels; this one has {1} x {2} "
                     "of OpenCV's type {3}",
                     kLeast_px, grey.cols, grey.rows, grey.type()));
+  // Lines take about as long as points.
+  auto lines = std::async(std::launch::async, [&] { return line_segments(grey, config_.lines); });
   std::vector<Corner> corners = corners_of(contrast_normalised(grey, config_.corners), config_.corners);
   if (std::ssize(corners) < config_.most_points / 3) {  // dim or bare: faint corners are better than none
     CornerConfig faint = config_.corners;
@@ -27,7 +29,7 @@ Expected<Features> ClassicalExtractor::extract(const cv::Mat& grey) {
     features.scores.push_back(corner.strength);
   }
   features.descriptors = describe_patches(grey, features.points_px);
-  features.lines = line_segments(grey, config_.lines);
+  features.lines = lines.get();
   return features;
 }
 

@@ -98,12 +98,9 @@ cv::Mat contrast_normalised(const cv::Mat& grey, const CornerConfig& config) {
   cv::boxFilter(image, mean, CV_32F, window, {-1, -1}, true, cv::BORDER_REFLECT);
   cv::sqrBoxFilter(image, squares, CV_32F, window, {-1, -1}, true, cv::BORDER_REFLECT);
   for (int row = 0; row < image.rows; ++row) {
-    auto* value = image.ptr<float>(row);
-    const auto *m = mean.ptr<float>(row), *s = squares.ptr<float>(row);
-    for (int column = 0; column < image.cols; ++column) {
-      const float deviation = std::sqrt(std::max(s[column] - m[column] * m[column], 0.0F));
-      value[column] = (value[column] - m[column]) / (deviation + floor);
-    }
+    Eigen::Map<Eigen::ArrayXf> value(image.ptr<float>(row), image.cols);
+    const Eigen::Map<const Eigen::ArrayXf> m(mean.ptr<float>(row), image.cols), s(squares.ptr<float>(row), image.cols);
+    value = (value - m) / ((s - m * m).max(0.0F).sqrt() + floor);
   }
   return image;
 }

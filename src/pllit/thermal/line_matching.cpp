@@ -46,11 +46,11 @@ std::optional<std::pair<double, double>> inverse_depths(const Keyframe& keyframe
                                                         const Camera& camera, const LineMatchConfig& config) {
   double n = 0.0, s = 0.0, ss = 0.0, d = 0.0, sd = 0.0;
   const Vector2f along = (line.end_px - line.start_px) / line.length_px();
+  const auto near = static_cast<float>(config.depth_near_px);
   for (std::size_t i = 0; i < keyframe.depths.size(); ++i) {
-    const auto near = static_cast<float>(config.depth_near_px);
-    if (!keyframe.depths[i] || distance_on_line(keyframe.features.points_px[i], line, near) < 0.0F ||
-        distance_on_line(keyframe.features.points_px[i], line, near) > near)
-      continue;
+    if (!keyframe.depths[i]) continue;
+    const float off = distance_on_line(keyframe.features.points_px[i], line, near);
+    if (off < 0.0F || off > near) continue;
     const Vector3d ray = camera.ray(keyframe.features.points_px[i].cast<double>());
     const double place = along.dot(keyframe.features.points_px[i] - line.start_px) / line.length_px();
     const double inverse = 1.0 / (ray.z() * keyframe.depths[i]->range_m);
@@ -143,11 +143,18 @@ float distance_on_line(const Vector2f& point_px, const LineSegment& line, float 
 PointsOnLines points_on_lines(const Features& features, const LineMatchConfig& config) {
   const auto near = static_cast<float>(config.on_line_px);
   PointsOnLines on_lines(features.lines.size());
-  for (std::size_t i = 0; i < features.lines.size(); ++i)
+  for (std::size_t i = 0; i < features.lines.size(); ++i) {
+    const LineSegment& line = features.lines[i];
+    // All that lies near, and a little more.
+    const Vector2f low = line.start_px.cwiseMin(line.end_px).array() - 1.5F * near,
+                   high = line.start_px.cwiseMax(line.end_px).array() + 1.5F * near;
     for (std::size_t k = 0; k < features.points_px.size(); ++k) {
-      const float distance = distance_on_line(features.points_px[k], features.lines[i], near);
+      const Vector2f& at = features.points_px[k];
+      if (at.x() < low.x() || at.x() > high.x() || at.y() < low.y() || at.y() > high.y()) continue;
+      const float distance = distance_on_line(at, line, near);
       if (distance >= 0.0F && distance <= near) on_lines[i].push_back(static_cast<int>(k));
     }
+  }
   return on_lines;
 }
 

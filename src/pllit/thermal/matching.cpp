@@ -85,33 +85,41 @@ std::vector<PointMatch> mutual_matches(const Keyframe& keyframe, const Predictio
   return matches;
 }
 
+/// T_C_K: as predicted.
+Tracks match_to_one(const Now& now, const PointsOnLines& on_lines_now, const SE3& T_C_K, const Keyframe& keyframe,
+                    const Camera& camera, const MatchConfig& config) {
+  if (keyframe.features.points_px.empty() || now.features.points_px.empty()) return {};
+  assert(keyframe.features.descriptors.cols == now.features.descriptors.cols);
+  const std::vector<Vector3d> rays_K = rays_of(keyframe, camera);
+  const auto matched_around = [&](const SE3& pose, double radius_px) {
+    return mutual_matches(keyframe, predictions_of(keyframe, rays_K, pose, camera, config.nearest_m),
+                          static_cast<float>(radius_px), now, config);
+  };
+  const SE3 agreed =
+      agreed_pose(keyframe, rays_K, matched_around(T_C_K, config.window_px), now.features, T_C_K, camera);
+  Tracks tracks{.points = matched_around(agreed, std::min(config.gate_px, config.window_px)), .lines = {}};
+  tracks.lines = match_lines(keyframe, now.features, on_lines_now, tracks.points, agreed, camera, config.lines);
+  mark_anchored(tracks.points, tracks.lines, keyframe.features, now.features, config.lines);
+  return tracks;
+}
+
 }  // namespace
 
 Tracks match_to_keyframes(const Features& now, const SE3& T_W_C_now, std::span<const Keyframe> window,
-                          const Camera& camera, const MatchConfig& config) {
+                          const Camera& camera, const MatchConfig& config, Arena& arena) {
   const Now searched{now, PointIndex(now.points_px, camera.width, camera.height)};
   const PointsOnLines on_lines_now = points_on_lines(now, config.lines);
+  std::vector<Tracks> found(window.size());
+  arena.for_chunks(window.size(), 1, [&](std::size_t k, std::size_t) {
+    found[k] = match_to_one(searched, on_lines_now, T_W_C_now.inverse() * window[k].T_W_C, window[k], camera, config);
+  });
   Tracks tracks;
-  for (std::size_t k = 0; k < window.size(); ++k) {
-    const Keyframe& keyframe = window[k];
-    if (keyframe.features.points_px.empty() || now.points_px.empty()) continue;
-    assert(keyframe.features.descriptors.cols == now.descriptors.cols);
-    const std::vector<Vector3d> rays_K = rays_of(keyframe, camera);
-    const auto matched_around = [&](const SE3& T_C_K, double radius_px) {
-      return mutual_matches(keyframe, predictions_of(keyframe, rays_K, T_C_K, camera, config.nearest_m),
-                            static_cast<float>(radius_px), searched, config);
-    };
-    const SE3 predicted_T_C_K = T_W_C_now.inverse() * keyframe.T_W_C;
-    const SE3 T_C_K =
-        agreed_pose(keyframe, rays_K, matched_around(predicted_T_C_K, config.window_px), now, predicted_T_C_K, camera);
-    std::vector<PointMatch> points = matched_around(T_C_K, std::min(config.gate_px, config.window_px));
-    const std::vector<LineMatch> lines = match_lines(keyframe, now, on_lines_now, points, T_C_K, camera, config.lines);
-    mark_anchored(points, lines, keyframe.features, now, config.lines);
-    for (PointMatch& match : points) {
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    for (PointMatch& match : found[k].points) {
       match.keyframe = k;
       tracks.points.push_back(match);
     }
-    for (LineMatch match : lines) {
+    for (LineMatch& match : found[k].lines) {
       match.keyframe = k;
       tracks.lines.push_back(match);
     }

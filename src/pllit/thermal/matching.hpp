@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "pllit/base/arena.hpp"
 #include "pllit/geometry/camera.hpp"
 #include "pllit/thermal/keyframe.hpp"
 #include "pllit/thermal/line_matching.hpp"
@@ -25,6 +26,6 @@ struct MatchConfig {
 /// are matched through the points, and points that lie on matched lines in both images marked (the paper's
 /// structure-anchored points). T_W_C_now: predicted. The keyframes' T_W_C: as estimated now.
 Tracks match_to_keyframes(const Features& now, const SE3& T_W_C_now, std::span<const Keyframe> window,
-                          const Camera& camera, const MatchConfig& config);
+                          const Camera& camera, const MatchConfig& config, Arena& arena);
 
 }  // namespace pllit
