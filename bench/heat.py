@@ -56,7 +56,7 @@ def scored_walks(rows, wanted):
 
 def findings_of(row, seed, wanted):
     """What `pllit eval --findings` says of a walk, its scene, and how long it was watched; nothing where the run failed."""
-    bag = sequences.recording(row, seed, wanted, images="agc" if wanted.video else None)
+    bag = sequences.recording(row, seed, wanted, **({"name": "agc", "keys": ["images=agc"]} if wanted.video else {}))
     session = wanted.out / (f"{row['name']}-{seed}" + ("-video" if wanted.video else "") + (f"-{wanted.name}" if wanted.name else ""))
     scene = bag.with_suffix(".scene.json")
     source = [str(bag), "--truth", str(bag.with_suffix(".tum")), "--config", row["config"], "--set", "loop.enabled=false"]

@@ -61,17 +61,18 @@ def keep_within(folder, limit_bytes):
         bag.unlink()
 
 
-def recording(row, seed, wanted, duration=None, images=None):
-    """The bag of a row and seed, whole or its first seconds, with the row's images or others, rendered where the cache has none."""
+def recording(row, seed, wanted, duration=None, name="", keys=()):
+    """The bag of a row and seed, whole or its first seconds, rendered where the cache has none; with other keys of the simulation it has a
+    name of its own."""
     folder = wanted.out / "recordings"
     folder.mkdir(parents=True, exist_ok=True)
-    bag = folder / (f"{row['name']}-{seed}" + (f"-{duration:g}s" if duration else "") + (f"-{images}" if images else "") + ".bag")
+    bag = folder / (f"{row['name']}-{seed}" + (f"-{duration:g}s" if duration else "") + (f"-{name}" if name else "") + ".bag")
     if not bag.exists() or not bag.with_suffix(".scene.json").exists():
         part = bag.with_name("unfinished-" + bag.name)
         command = [PLLIT, "simulate", row["name"], "--seed", str(seed), "--overwrite", "--out", str(part)]
         command += ["--jpeg", "95"] if row["config"] in COMPRESSED else []
         command += ["--duration", str(duration)] if duration else []
-        command += ["--set", f"images={images}"] if images else []
+        command += [word for key in keys for word in ("--set", key)]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         for file in folder.glob(part.stem + ".*"):
             file.rename(file.with_name(file.name.removeprefix("unfinished-")))

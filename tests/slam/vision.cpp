@@ -66,9 +66,9 @@ class Blank : public EventSource {
 };
 
 /// Poses of all frames; with or without looking at the images, cut at them in either case.
-Trajectory poses_of(EventSource& source, const Rig& rig, std::unique_ptr<Vision> vision) {
+Trajectory poses_of(EventSource& source, const Rig& rig, std::unique_ptr<Vision> vision, const Config& config = {}) {
   PacketAssembler assembler(rig, {.images = true});
-  Odometry odometry(rig, {}, std::move(vision));
+  Odometry odometry(rig, config, std::move(vision));
   Trajectory poses;
   const auto take = [&](std::optional<SensorPacket> packet) {
     if (!packet) return false;
@@ -100,6 +100,20 @@ TEST(Vision, LeavesTheTrajectoryOfBlankImagesAsItIsWithoutAny) {
   ASSERT_GT(with.size(), 50U);
   for (std::size_t i = 0; i < with.size(); ++i)
     EXPECT_LT((with[i].T_W_I.translation() - without[i].T_W_I.translation()).norm(), 1e-9);
+}
+
+TEST(Vision, GivesTheSameTrajectoryOnOneThreadAsOnThree) {
+  const auto poses_on = [](int threads) {
+    auto simulation = open_simulation("sim:room?rig=hilti2022&duration=5&seed=7");
+    const Rig rig = simulation->rig();
+    Config config;
+    config.threads = threads;
+    return poses_of(*simulation, rig, *make_vision(rig, config.vision), config);
+  };
+  const Trajectory one = poses_on(1), three = poses_on(3);
+  ASSERT_EQ(one.size(), three.size());
+  ASSERT_GT(one.size(), 30U);
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].T_W_I.coeffs(), three[i].T_W_I.coeffs()) << i;
 }
 
 TEST(Vision, SeesExplicitLinesOfTheMapAgain) {
