@@ -119,6 +119,27 @@ TEST(VisitChanges, AreSeenWhereTheScaleWandersFromRoomToRoom) {
   }
 }
 
+TEST(VisitChanges, OfALinearCameraTellAThingThatFillsItsNeighbourhoodByTheRestOfTheSite) {
+  Random random(5);
+  const PointTable before = repeated(wall(random), 3);
+  PointTable now = before;
+  const auto in_cabinet = [](const Vector3f& p_W) { return p_W.y() > 8.0F && p_W.y() < 12.0F && p_W.x() > 0.4F; };
+  for (std::size_t i = 0; i < now.points.size(); ++i)
+    for (std::size_t field : {0U, 1U}) now.fields[field].values[i] += in_cabinet(now.points[i]) ? 80.0F : 0.0F;
+  VisitChangesConfig config;
+  config.drift.curve.shape = AnchorConfig::Shape::affine;
+  config.drift.most_shift = 60.0;
+  const VisitChanges found = changes_between(seen_from(kBeforeTheWall, before), seen_from(kBeforeTheWall, now), config);
+  int voxels = 0;  // in pieces: at the bricks' seams a neighbour may explain a voxel
+  for (const VisitChange& change : found.changes) {
+    EXPECT_EQ(change.kind, VisitChangeKind::hotter);
+    EXPECT_NEAR(change.mean, 80.0, 15.0);
+    EXPECT_TRUE(in_cabinet(change.position_W.cast<float>()));
+    voxels += change.voxels;
+  }
+  EXPECT_GT(voxels, 300);
+}
+
 TEST(VisitChanges, TellAHotThingThatWasNotThere) {
   const VisitChanges found = between({.box = true});
   ASSERT_EQ(found.changes.size(), 1u);

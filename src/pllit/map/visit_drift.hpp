@@ -17,6 +17,9 @@ struct VisitDriftConfig {
   double reach_m = 2.0;  ///< ... from the surfaces around it that both visits saw
   /// A map is the mean of many images, whose curves bend differently.
   AnchorConfig curve{.loss = 20.0, .min_pairs = 60, .min_share = 0.4, .curve_slope_doubt = 0.15};
+  /// Of a linear camera neighbourhoods differ from the site by a shift alone, of at most so much: with a slope of its
+  /// own a large thing that has changed would explain itself. 0: each neighbourhood has a curve.
+  double most_shift = 0.0;
 };
 
 /// A voxel that both visits saw.
@@ -45,6 +48,7 @@ class VisitDrift {
 
  private:
   double block_m_;
+  bool shifts_;  ///< blocks are shifts of what the whole site's curve gives
   double covered_ = 0.0;
   AnchorFit whole_;
   std::map<VoxelKey, AnchorFit> blocks_;  ///< where their own curve holds

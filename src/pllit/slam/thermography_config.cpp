@@ -91,6 +91,7 @@ VisitChangesConfig visit_changes_config(const ThermographyConfig& config) {
   changes.drift.curve.shape = AnchorConfig::Shape::affine;
   changes.drift.curve.loss = 1.5 * config.anchor.loss;
   changes.drift.curve.affine_slope_doubt = 0.05;
+  changes.drift.most_shift = 2.0 * changes.min_change;
   return changes;
 }
 
