@@ -2,6 +2,7 @@
 controls (homographic adaptation: DeTone et al., SuperPoint, 2018, for points; Pautrat et al., DeepLSD, 2023, for lines)."""
 import cv2
 import numpy as np
+import torch
 
 import warps
 from photometric import seen_by_a_camera
@@ -16,15 +17,34 @@ def local_contrast(image, reach=40):
     return np.clip((image - mean) / deviation, -4, 4)
 
 
-def _move(rng, width, height):
-    size = np.array([width, height])
-    motion = warps.random_motion(rng, 1.0)  # of a unit square, then of the image
-    scale = np.diag([1.0 / size.max(), 1.0 / size.max(), 1.0])
+def _move(g, width, height):
+    motion = warps.random_motion(g, 1, 1.0)[0].numpy().astype(np.float64)  # of a unit square, then of the image
+    scale = np.diag([1.0 / max(width, height), 1.0 / max(width, height), 1.0])
     return np.linalg.inv(scale) @ motion @ scale
 
 
-def _corners(rng, image, most):
-    smooth = cv2.GaussianBlur(local_contrast(image), (0, 0), rng.uniform(0.8, 1.6))
+def _carried(homography, points):
+    points = np.asarray(points, np.float64).reshape(-1, 1, 2)
+    return cv2.perspectiveTransform(points, homography).reshape(-1, 2) if len(points) else np.zeros((0, 2))
+
+
+def _warped(image, homography):
+    """The image moved within its frame, and where the frame shows it (uint8)."""
+    size = image.shape[1], image.shape[0]
+    moved = cv2.warpPerspective(image, homography, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return moved, cv2.warpPerspective(np.ones(image.shape, np.uint8), homography, size, flags=cv2.INTER_NEAREST)
+
+
+def _by_a_camera(g, image):
+    return seen_by_a_camera(g, torch.from_numpy(image)[None, None])[0, 0].numpy()
+
+
+def _inside(points, width, height):
+    return ((points >= 0) & (points <= np.array([width - 1.0, height - 1.0]))).all(1)
+
+
+def _corners(g, image, most):
+    smooth = cv2.GaussianBlur(local_contrast(image), (0, 0), float(warps.uniform(g, 1, 0.8, 1.6)))
     strength = cv2.cornerMinEigenVal(smooth, 5)
     best = cv2.dilate(strength, np.ones((7, 7), np.uint8))
     y, x = np.nonzero((strength >= best) & (strength > 1e-6))
@@ -32,22 +52,22 @@ def _corners(rng, image, most):
     return np.stack([x[order], y[order]], 1).astype(np.float64)
 
 
-def repeated_points(rng, image, rounds=12, least_share=0.2):
+def repeated_points(g, image, rounds=12, least_share=0.2):
     """Shi-Tomasi corners that come back in at least a share of the rounds, best first: N x 2."""
     height, width = image.shape
     most = width * height // 800
     found, looked = np.zeros_like(image), np.zeros_like(image)
     for number in range(rounds):
-        homography = np.eye(3) if number == 0 else _move(rng, width, height)
-        crop, shown = warps.warped(image, homography, (width, height))
-        corners = _corners(rng, seen_by_a_camera(rng, crop), most)
+        homography = np.eye(3) if number == 0 else _move(g, width, height)
+        crop, shown = _warped(image, homography)
+        corners = _corners(g, _by_a_camera(g, crop), most)
         corners = corners[shown[corners[:, 1].astype(int), corners[:, 0].astype(int)] > 0]
         votes = np.zeros_like(image)
-        back = np.round(warps.carried(np.linalg.inv(homography), corners)).astype(int)
-        back = back[warps.inside(back, width, height)]
+        back = np.round(_carried(np.linalg.inv(homography), corners)).astype(int)
+        back = back[_inside(back, width, height)]
         votes[back[:, 1], back[:, 0]] = 1.0
         found += cv2.dilate(votes, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))) + cv2.GaussianBlur(votes, (0, 0), 1.2)
-        looked += warps.warped(np.ones_like(image), np.linalg.inv(homography), (width, height))[0] if number else 1.0
+        looked += _warped(np.ones_like(image), np.linalg.inv(homography))[0] if number else 1.0
     share = cv2.GaussianBlur(found, (0, 0), 0.8) / np.maximum(looked, rounds / 3)
     best = cv2.dilate(share, np.ones((9, 9), np.uint8))
     y, x = np.nonzero((share >= best) & (share > least_share))
@@ -120,20 +140,22 @@ def _joined(segments, layers, least_share, gap_px=10.0):
     return segments[alive]
 
 
-def repeated_segments(rng, image, rounds=6, least_share=0.35, least_px=12.0):
+def repeated_segments(g, image, rounds=6, least_share=0.35, least_px=12.0):
     """Segments that LSD finds in at least a share of the rounds, pieced together: M x 4."""
     height, width = image.shape
     votes, looked, candidates = np.zeros((ANGLE_BINS, height, width), np.float32), np.zeros_like(image), []
     for number in range(rounds):
-        homography = np.eye(3) if number == 0 else _move(rng, width, height)
-        crop, shown = warps.warped(image, homography, (width, height))
-        segments = _segments(seen_by_a_camera(rng, crop) if number else image)
+        homography = np.eye(3) if number == 0 else _move(g, width, height)
+        crop, shown = _warped(image, homography)
+        segments = _segments(_by_a_camera(g, crop) if number else image)
         inner = cv2.erode(shown, np.ones((9, 9), np.uint8))
         middle = np.round((segments[:, :2] + segments[:, 2:]) / 2).astype(int).clip(0, [width - 1, height - 1])
         segments = segments[inner[middle[:, 1], middle[:, 0]] > 0]  # not the border of what the crop shows
-        segments = warps.clipped(warps.carried(np.linalg.inv(homography), segments.reshape(-1, 2)).reshape(-1, 4), width, height)
+        back = _carried(np.linalg.inv(homography), segments.reshape(-1, 2)).reshape(-1, 4)
+        segments = warps.clipped(torch.from_numpy(back), width, height).numpy()
+        segments = segments[np.isfinite(segments).all(1)]
         votes += _drawn(segments, image.shape)
-        looked += warps.warped(np.ones_like(image), np.linalg.inv(homography), (width, height))[0] if number else 1.0
+        looked += _warped(np.ones_like(image), np.linalg.inv(homography))[0] if number else 1.0
         candidates.append(segments)
     votes /= np.maximum(looked, rounds / 3)
     joined = _joined(np.concatenate(candidates[:2]), votes, least_share)

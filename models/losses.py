@@ -1,37 +1,37 @@
 """Losses of the heads, each a mean over what it judges."""
+import math
+
 import torch
 import torch.nn.functional as F
 
+from pl_net import ATTRACTION_PX
 from targets import IGNORED
+from warps import sampled
+
+NEAR_PX = 12.0
 
 
 def point_loss(points, labels):
     return F.cross_entropy(points.float(), labels, ignore_index=IGNORED)
 
 
-def descriptor_loss(descriptors_a, descriptors_b, at_a, at_b, pair, temperature=0.1, near_px=12.0):
-    """InfoNCE both ways. descriptors: N x 64 x H/8 x W/8; at: K x 2 px in the images of index `pair`, the same places in both.
-    Every other place of the batch is a wrong answer, except those of the same image nearer than near_px."""
-    a, b = sampled(descriptors_a, at_a, pair), sampled(descriptors_b, at_b, pair)
+def descriptor_loss(descriptors_a, descriptors_b, at_a, at_b, known, temperature=0.1):
+    """InfoNCE both ways. descriptors: B x 64 x H/8 x W/8; at: B x K x 2 px, the same places in both; known: B x K, which of them
+    both views show. Every other place of the batch is a wrong answer, except those of the same image nearer than NEAR_PX."""
+    a, b = described(descriptors_a, at_a), described(descriptors_b, at_b)
     likeness = a @ b.T / temperature
-    same_image = pair[:, None] == pair[None, :]
-    excused = same_image & ((torch.cdist(at_a, at_a) < near_px) | (torch.cdist(at_b, at_b) < near_px))
-    excused.fill_diagonal_(False)
-    likeness = likeness.masked_fill(excused, -1e4)
-    right = torch.arange(len(a))
-    return 0.5 * (F.cross_entropy(likeness, right) + F.cross_entropy(likeness.T, right))
+    near = (torch.cdist(at_a, at_a) < NEAR_PX) | (torch.cdist(at_b, at_b) < NEAR_PX)
+    likeness = likeness.masked_fill(torch.block_diag(*near).fill_diagonal_(False), -1e4)
+    known = known.flatten()
+    right, weight = torch.arange(len(a), device=a.device), known.float() / known.sum().clamp(min=1)
+    both_ways = (likeness.masked_fill(~known[None], -1e4), likeness.T.masked_fill(~known[None], -1e4))
+    return 0.5 * sum((F.cross_entropy(each, right, reduction="none") * weight).sum() for each in both_ways)
 
 
-def sampled(maps, at_px, image, stride=8):
-    """Unit descriptors at places in pixels, bilinear between cells."""
-    maps = maps.float()
-    height, width = maps.shape[2:]
-    grid = (at_px + 0.5) / (stride * torch.tensor([width, height], dtype=torch.float32)) * 2 - 1
-    columns = []
-    for index in range(maps.shape[0]):
-        mine = grid[image == index]
-        columns.append(F.grid_sample(maps[index : index + 1], mine[None, None], align_corners=False, padding_mode="border")[0, :, 0])
-    return F.normalize(torch.cat(columns, 1).T, dim=1)
+def described(maps, at_px, stride=8):
+    """Unit descriptors at places in pixels, bilinear between cells: (B K) x 64."""
+    cells = (at_px + 0.5) / stride - 0.5
+    return F.normalize(sampled(maps.float(), cells).transpose(1, 2).flatten(0, 1), dim=1)
 
 
 def line_losses(raw, field, weights):
@@ -40,11 +40,11 @@ def line_losses(raw, field, weights):
     attraction, geometry, junctions = weights[:, 0], weights[:, 1], weights[:, 2]
     mean = lambda loss, weight: (loss * weight).sum() / weight.sum().clamp(min=1.0)
     unlike = F.binary_cross_entropy_with_logits(raw[:, 0], field[:, 0], reduction="none")
-    distance = (10.0 * torch.sigmoid(raw[:, 1]) - field[:, 1]).abs() / 4.0
+    distance = (ATTRACTION_PX * torch.sigmoid(raw[:, 1]) - field[:, 1]).abs() / 4.0
     direction = 1.0 - (F.normalize(raw[:, 2:4], dim=1, eps=1e-4) * field[:, 2:4]).sum(1)
     # A foot a hair's breadth away has no direction to speak of.
-    direction = direction * (field[:, 1] / 1.0).clamp(max=1.0)
-    ends = (1.5708 * torch.sigmoid(raw[:, 4:6]) - field[:, 4:6]).abs().sum(1)
+    direction = direction * field[:, 1].clamp(max=1.0)
+    ends = (0.5 * math.pi * torch.sigmoid(raw[:, 4:6]) - field[:, 4:6]).abs().sum(1)
     rare = torch.where(field[:, 6] > 0, 8.0, 1.0)
     junction = F.binary_cross_entropy_with_logits(raw[:, 6], field[:, 6], reduction="none") * rare
     offset = (4.0 * torch.sigmoid(raw[:, 7:9]) - 2.0 - field[:, 7:9]).abs().sum(1)

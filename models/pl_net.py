@@ -117,6 +117,13 @@ def point_channel(x, y):
     return ((y % 4) * 4 + x % 4) * 4 + (y // 4) * 2 + x // 4
 
 
+def score_map(points):
+    """Raw point map to the probability that a pixel is a key point, N x 1 x H x W: a soft-max without the transposes that its
+    operator costs at run time."""
+    odds = torch.exp(torch.clamp(points[:, :64].float() - points[:, 64:].float(), max=30.0))
+    return F.pixel_shuffle(F.pixel_shuffle(odds / (1.0 + odds.sum(1, keepdim=True)), 2), 4)
+
+
 def read_lines(raw):
     """Raw line map to meanings, channels: attraction 0..1; distance px; direction from the pixel to its foot on the line, x and y,
     of any length; two end points as angles 0..pi/2 (end along that direction turned from x towards y, then the other); junction
@@ -135,7 +142,4 @@ class Exported(nn.Module):
 
     def forward(self, image):
         points, descriptors, lines = self.net(image)
-        # A soft-max without the transposes that its operator costs at run time.
-        odds = torch.exp(torch.clamp(points[:, :64] - points[:, 64:], max=30.0))
-        scores = F.pixel_shuffle(F.pixel_shuffle(odds / (1.0 + odds.sum(1, keepdim=True)), 2), 4)
-        return scores, descriptors, read_lines(lines)
+        return score_map(points), descriptors, read_lines(lines)

@@ -1,102 +1,105 @@
 """Images with points and segments to train on, made once from seeds and kept in a folder."""
+import concurrent.futures
 import json
 import pathlib
 import subprocess
 
 import cv2
 import numpy as np
+import torch
 
 from adaptation import repeated_points, repeated_segments
 from synthetic import make_scene
 
 HELD_OUT = 10  # one still of HIT-UAV in ten is never trained on
 
-
-class Sources:
-    """Groups of examples; each draw picks a group by its weight, then an example."""
-
-    def __init__(self, groups):
-        self.groups = [(weight, examples) for weight, examples in groups if weight > 0 and examples]
-        total = sum(weight for weight, _ in self.groups)
-        self.shares = [weight / total for weight, _ in self.groups]
-
-    def draw(self, rng):
-        examples = self.groups[rng.choice(len(self.groups), p=self.shares)][1]
-        image, points, segments = examples[rng.integers(len(examples))]
-        return image.astype(np.float32) / 255, points, segments
+# Scenes of the simulator to train on: seeds from 10000 on, never `plant`, never a row of bench/sequences.yaml.
+THERMAL, VISIBLE = "--set rig=inspection", "--set rig=hilti2022"
+SIMULATED = {
+    "room_1": f"room --seed 10002 --duration 50 {THERMAL}",
+    "room_2": f"room --seed 10012 --duration 50 {THERMAL} --set people=2",
+    "stairs_1": f"stairs --seed 10003 --duration 30 {THERMAL}",
+    "corridor_1": f"corridor --seed 10004 --duration 30 {THERMAL} --set length=40",
+    "field_1": f"field --seed 10005 --duration 25 {THERMAL}",
+    "street_1": "street --seed 10001 --duration 40 --set rig=ntu4dradlm --set length=400 --set cars=6 --set people=6",
+    "street_2": "street --seed 10011 --duration 40 --set rig=ntu4dradlm --set length=400",
+    "room_3": f"room --seed 10022 --duration 40 {VISIBLE}",
+    "room_4": f"room --seed 10032 --duration 30 {VISIBLE} --set light=night",
+    "stairs_2": f"stairs --seed 10013 --duration 25 {VISIBLE}",
+    "corridor_2": f"corridor --seed 10014 --duration 20 {VISIBLE} --set light=night --set bare=1 --set length=40",
+    "street_3": f"street --seed 10021 --duration 30 {VISIBLE} --set length=300",
+}
+LEAST_EDGE_GREY = 5.0  # an edge of the scene that shows less than this in the image is none of the image's
 
 
 def read(path):
     with np.load(path) as file:
-        return file["image"], file["points"], file["segments"]
+        return cv2.imdecode(file["jpeg"], cv2.IMREAD_GRAYSCALE), file["points"], file["segments"]
 
 
 def all_in(folder):
     return [read(path) for path in sorted(pathlib.Path(folder).glob("*.npz"))]
 
 
+def make_all(folder, make, jobs, processes):
+    """Calls make(*job) for each job, a name and arguments, whose file is not there yet, and keeps what it returns."""
+    folder.mkdir(parents=True, exist_ok=True)
+    missing = [(name, *arguments) for name, *arguments in jobs if not (folder / f"{name}.npz").exists()]
+    with concurrent.futures.ProcessPoolExecutor(processes, initializer=_alone) as pool:
+        for (name, *_), example in zip(missing, pool.map(make, *zip(*(job[1:] for job in missing)), chunksize=4) if missing else ()):
+            _keep(folder / f"{name}.npz", *example)
+
+
+def _alone():
+    torch.set_num_threads(1)
+    cv2.setNumThreads(1)
+
+
 def _keep(path, image, points, segments):
-    partial = path.with_suffix(".partial.npz")
-    np.savez(partial, image=np.round(np.clip(image, 0, 1) * 255).astype(np.uint8), points=points, segments=segments)
+    partial = path.with_suffix(".partial")
+    jpeg = cv2.imencode(".jpg", np.round(np.clip(image, 0, 1) * 255).astype(np.uint8), [cv2.IMWRITE_JPEG_QUALITY, 90])[1]
+    with open(partial, "wb") as file:
+        np.savez_compressed(file, jpeg=jpeg, points=np.float32(points), segments=np.float32(segments))
     partial.rename(path)
 
 
-def make_shapes(folder, count, seed):
-    folder.mkdir(parents=True, exist_ok=True)
-    for number in range(count):
-        path = folder / f"{number:05d}.npz"
-        if not path.exists():
-            _keep(path, *make_scene(np.random.default_rng((seed, number))))
+def shape(*seed):
+    return make_scene(np.random.default_rng(seed))
 
 
-def label(folder, stills, seed, every=1):
-    """Labels by homographic adaptation every n-th of some stills."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for number, still in list(enumerate(stills))[::every]:
-        path = folder / f"{still.stem}.npz"
-        if path.exists():
-            continue
-        image = cv2.imread(str(still), cv2.IMREAD_GRAYSCALE).astype(np.float32) / 255
-        rng = np.random.default_rng((seed, number))
-        _keep(path, image, repeated_points(rng, image), repeated_segments(rng, image))
+def still(path, *seed):
+    """A photograph, labelled by homographic adaptation."""
+    image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE).astype(np.float32) / 255
+    g = _generator(seed)
+    return image, repeated_points(g, image), repeated_segments(g, image)
+
+
+def simulated_still(path, *seed):
+    """The scene's own edges where they show; points as in photographs."""
+    grey = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE).astype(np.float32)
+    edges = json.loads(path.with_name(path.name.replace("grey.png", "edges.json")).read_text())["edges"]
+    pieces = [piece for edge in edges for piece in _straight(np.array(edge["line_px"]))]
+    shown = [piece for piece in pieces if _shows(grey, piece)]
+    return grey / 255, repeated_points(_generator(seed), grey / 255), np.array(shown).reshape(-1, 4)
+
+
+def _generator(seed):
+    return torch.Generator().manual_seed((seed[0] << 32) + seed[1])
 
 
 def hit_uav(folder, held_out=False):
     """The stills that may be trained on, or those held out."""
     stills = sorted(pathlib.Path(folder).glob("*.jpg"))
-    return [still for i, still in enumerate(stills) if (i % HELD_OUT == 0) == held_out]
-
-
-# Scenes of the simulator to train on: seeds from 10000 on, never `plant`, never a row of bench/sequences.yaml.
-SIMULATED = {
-    "street": "street --seed 10001 --duration 12 --set image_rate=1 --set length=400",
-    "room": "room --seed 10002 --duration 24 --set image_rate=0.5 --set rig=inspection",
-    "stairs": "stairs --seed 10003 --duration 14 --set image_rate=0.5 --set rig=inspection",
-    "corridor": "corridor --seed 10004 --duration 14 --set image_rate=0.5 --set rig=inspection --set length=40",
-}
-LEAST_EDGE_GREY = 5.0  # an edge of the scene that shows less than this in the image is none of the image's
+    return [path for i, path in enumerate(stills) if (i % HELD_OUT == 0) == held_out]
 
 
 def simulate(folder, program):
+    """Renders one image a second of each scene; the paths of all of them."""
     for name, scene in SIMULATED.items():
         if not (folder / name / "frames.json").exists():
-            common = "--set images=agc --set scans=0 --truth edges --overwrite --frames"
+            common = "--set image_rate=1 --set images=agc --set scans=0 --truth edges --overwrite --frames"
             subprocess.run([program, "simulate", *scene.split(), *common.split(), str(folder / name)], check=True)
-
-
-def label_simulated(folder, frames, seed):
-    """The scene's own edges where they show; points as in stills."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for number, still in enumerate(sorted(frames.glob("*/*.grey.png"))):
-        path = folder / f"{still.parent.name}_{still.name.split('.')[0]}.npz"
-        if path.exists():
-            continue
-        grey = cv2.imread(str(still), cv2.IMREAD_GRAYSCALE).astype(np.float32)
-        edges = json.loads(still.with_name(still.name.replace("grey.png", "edges.json")).read_text())["edges"]
-        pieces = [piece for edge in edges for piece in _straight(np.array(edge["line_px"]))]
-        shown = [piece for piece in pieces if _shows(grey, piece)]
-        points = repeated_points(np.random.default_rng((seed, number)), grey / 255, rounds=6)
-        _keep(path, grey / 255, points, np.array(shown).reshape(-1, 4))
+    return sorted(folder.glob("*/*.grey.png"))
 
 
 def _straight(line, most_bend_px=1.0):
