@@ -54,13 +54,18 @@ def scored_walks(rows, wanted):
             yield row, seed, found
 
 
+def walked(row, seed, bag, kind, wanted):
+    """The session of a walk and its summary; nothing for the latter where the run failed."""
+    session = wanted.out / "-".join(filter(None, [row["name"], str(seed), kind, wanted.name]))
+    source = [str(bag), "--truth", str(bag.with_suffix(".tum")), "--config", row["config"], "--set", "loop.enabled=false"]
+    return session, sequences.summary_of(session, source + wanted.more)
+
+
 def findings_of(row, seed, wanted):
     """What `pllit eval --findings` says of a walk, its scene, and how long it was watched; nothing where the run failed."""
     bag = sequences.recording(row, seed, wanted, **({"name": "agc", "keys": ["images=agc"]} if wanted.video else {}))
-    session = wanted.out / (f"{row['name']}-{seed}" + ("-video" if wanted.video else "") + (f"-{wanted.name}" if wanted.name else ""))
+    session, summary = walked(row, seed, bag, "video" if wanted.video else "", wanted)
     scene = bag.with_suffix(".scene.json")
-    source = [str(bag), "--truth", str(bag.with_suffix(".tum")), "--config", row["config"], "--set", "loop.enabled=false"]
-    summary = sequences.summary_of(session, source + wanted.more)
     if not summary:
         return None
     scored = subprocess.run([sequences.PLLIT, "eval", "--findings", str(scene), str(session), "--json"], check=True, capture_output=True, text=True)

@@ -12,6 +12,7 @@ bench/heat.py are. Needs numpy.
 
 import json
 import subprocess
+import sys
 
 import numpy as np
 
@@ -33,14 +34,14 @@ def visits_of(row, seed, wanted):
     later = ["finding_at=0", f"finding_K={wanted.fault:g}", "visit=1", f"warmer_K={wanted.warmer:g}"]
     for name, keys in (("before", ["finding_at=3000"]), (f"after{wanted.fault:+g}K{wanted.warmer:+g}K", later)):
         bag = sequences.recording(row, seed, wanted, name=name, keys=keys)
-        session = wanted.out / (f"{row['name']}-{seed}-{name}" + (f"-{wanted.name}" if wanted.name else ""))
-        source = [str(bag), "--truth", str(bag.with_suffix(".tum")), "--config", row["config"], "--set", "loop.enabled=false"]
-        yield bag, session, sequences.summary_of(session, source + wanted.more)
+        yield bag, *heat.walked(row, seed, bag, name, wanted)
 
 
 def compared(before, after):
     """What `pllit compare` says of a session; nothing where it refuses."""
     done = subprocess.run([sequences.PLLIT, "compare", str(before), str(after), "--json"], capture_output=True, text=True)
+    if done.returncode not in (0, 2):
+        sys.exit(f"pllit compare failed: {done.stderr}")
     return json.loads(done.stdout)["sessions"][0] if done.returncode == 0 else None
 
 

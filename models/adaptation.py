@@ -24,8 +24,7 @@ def _move(g, width, height):
 
 
 def _carried(homography, points):
-    points = np.asarray(points, np.float64).reshape(-1, 1, 2)
-    return cv2.perspectiveTransform(points, homography).reshape(-1, 2) if len(points) else np.zeros((0, 2))
+    return warps.carried(torch.from_numpy(homography)[None], torch.from_numpy(points)[None])[0].numpy()
 
 
 def _warped(image, homography):
@@ -37,10 +36,6 @@ def _warped(image, homography):
 
 def _by_a_camera(g, image):
     return seen_by_a_camera(g, torch.from_numpy(image)[None, None])[0, 0].numpy()
-
-
-def _inside(points, width, height):
-    return ((points >= 0) & (points <= np.array([width - 1.0, height - 1.0]))).all(1)
 
 
 def _corners(g, image, most):
@@ -64,7 +59,7 @@ def repeated_points(g, image, rounds=12, least_share=0.2):
         corners = corners[shown[corners[:, 1].astype(int), corners[:, 0].astype(int)] > 0]
         votes = np.zeros_like(image)
         back = np.round(_carried(np.linalg.inv(homography), corners)).astype(int)
-        back = back[_inside(back, width, height)]
+        back = back[warps.inside(torch.from_numpy(back), width, height).numpy()]
         votes[back[:, 1], back[:, 0]] = 1.0
         found += cv2.dilate(votes, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))) + cv2.GaussianBlur(votes, (0, 0), 1.2)
         looked += _warped(np.ones_like(image), np.linalg.inv(homography))[0] if number else 1.0

@@ -14,7 +14,6 @@ ATTRACTION_PX = 10.0  # a pixel farther than this from every segment's interior 
 END_SCALE_PX = 16.0  # an end point t pixels along the line from the foot is stated as the angle atan(t / END_SCALE_PX)
 
 POINT_MODULES = ("stem", "stage4", "stage8", "stage16", "up8", "up4", "points", "dustbin", "descriptors")
-LINE_MODULES = ("line8", "line16", "line_up", "line4", "lines")
 
 
 class LocalContrast(nn.Module):

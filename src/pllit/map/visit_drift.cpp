@@ -30,8 +30,7 @@ AnchorPair pair_of(const SharedVoxel& voxel, double usual_variance) {
 
 }  // namespace
 
-VisitDrift::VisitDrift(std::span<const SharedVoxel> shared, const VisitDriftConfig& config)
-    : block_m_(config.block_m), shifts_(config.most_shift > 0.0) {
+VisitDrift::VisitDrift(std::span<const SharedVoxel> shared, const VisitDriftConfig& config) : block_m_(config.block_m) {
   const double usual = median_variance(shared);
   std::vector<AnchorPair> pairs;
   std::map<VoxelKey, std::vector<std::size_t>> members;
@@ -40,8 +39,9 @@ VisitDrift::VisitDrift(std::span<const SharedVoxel> shared, const VisitDriftConf
     members[voxel_key(voxel_of(shared[i].p_W.cast<float>(), 1.0 / block_m_))].push_back(i);
   }
   whole_ = anchor_curve(pairs, {}, config.curve);
+  const bool shifts = config.most_shift > 0.0;  // of what the whole site's curve gives
   AnchorConfig local = config.curve;
-  if (shifts_) {
+  if (shifts) {
     local.shape = AnchorConfig::Shape::bias;
     for (AnchorPair& pair : pairs) pair.now = static_cast<float>(whole_.curve(pair.now));
   }
@@ -55,8 +55,13 @@ VisitDrift::VisitDrift(std::span<const SharedVoxel> shared, const VisitDriftConf
       for (const std::size_t i : found->second)
         if ((shared[i].p_W - centre_W).squaredNorm() < config.reach_m * config.reach_m) around.push_back(pairs[i]);
     });
-    AnchorFit fit = anchor_curve(around, shifts_ ? AnchorCurve{} : whole_.curve, local);
-    if (shifts_ && (!whole_.holds || std::abs(fit.curve.bias) > config.most_shift)) fit.holds = false;
+    AnchorFit fit = anchor_curve(around, shifts ? AnchorCurve{} : whole_.curve, local);
+    if (shifts) {
+      const double shift = fit.curve.bias;
+      fit.holds = fit.holds && whole_.holds && std::abs(shift) <= config.most_shift;
+      fit.curve = whole_.curve;
+      fit.curve.bias += shift;
+    }
     if (fit.holds || whole_.holds) covered_ += static_cast<double>(own.size()) / static_cast<double>(shared.size());
     if (fit.holds) blocks_.emplace(key, std::move(fit));
   }
@@ -64,14 +69,11 @@ VisitDrift::VisitDrift(std::span<const SharedVoxel> shared, const VisitDriftConf
 
 std::optional<BroughtIntensity> VisitDrift::bring(const Vector3d& p_W, double intensity) const {
   const auto block = blocks_.find(voxel_key(voxel_of(p_W.cast<float>(), 1.0 / block_m_)));
-  const bool local = block != blocks_.end();
-  const AnchorFit& fit = local ? block->second : whole_;
+  const AnchorFit& fit = block == blocks_.end() ? whole_ : block->second;
   if (!fit.holds) return std::nullopt;
   // The spread of the whole site and of the surfaces here that the curve fits: a large thing that has changed is half
   // of what stands around it, and must not make itself doubtful.
   const double spread = std::max(fit.rms, whole_.holds ? whole_.spread : fit.spread);
-  if (local && shifts_)
-    return BroughtIntensity{fit.curve(whole_.curve(intensity)), std::hypot(spread, whole_.curve.doubt(intensity))};
   return BroughtIntensity{fit.curve(intensity), std::hypot(spread, fit.curve.doubt(intensity))};
 }
 

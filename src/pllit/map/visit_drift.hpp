@@ -48,7 +48,6 @@ class VisitDrift {
 
  private:
   double block_m_;
-  bool shifts_;  ///< blocks are shifts of what the whole site's curve gives
   double covered_ = 0.0;
   AnchorFit whole_;
   std::map<VoxelKey, AnchorFit> blocks_;  ///< where their own curve holds

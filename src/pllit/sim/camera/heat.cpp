@@ -93,9 +93,8 @@ bool Heat::sun_may_warm(const Hit& hit) const {
 
 bool Heat::in_sun(const RayCaster& caster, const Ray& ray, const Hit& hit) const {
   if (!sun_may_warm(hit)) return false;
-  constexpr double far_m = 150.0, off_m = 0.01;
-  const Vector3d p_W = ray.origin_W + hit.range_m * ray.direction_W + off_m * hit.normal_W.cast<double>();
-  return !caster.blocked(p_W, p_W + far_m * to_sun_W_.cast<double>());
+  const Vector3d p_W = off_surface_W(ray, hit);
+  return !caster.blocked(p_W, p_W + kSunReach_m * to_sun_W_.cast<double>());
 }
 
 /// Emissivity falls beyond about 60 degrees (Schlick's approximation of Fresnel's reflection).

@@ -28,13 +28,10 @@ Patches::Patches(std::span<const Ray> rays, std::span<const Hit> hits, std::size
 }
 
 void Patches::seek_sun_of(const std::vector<std::size_t>& chosen, const RayCaster& caster, const Vector3d& to_sun_W) {
-  constexpr double far_m = 150.0, off_m = 0.01;
   std::vector<Vector3d> from_W;
-  for (const std::size_t i : chosen)
-    from_W.emplace_back(rays_[i].origin_W + hits_[i].range_m * rays_[i].direction_W +
-                        off_m * hits_[i].normal_W.cast<double>());
+  for (const std::size_t i : chosen) from_W.push_back(off_surface_W(rays_[i], hits_[i]));
   const auto in_shade = std::make_unique<bool[]>(chosen.size());
-  caster.blocked(from_W, far_m * to_sun_W, {in_shade.get(), chosen.size()});
+  caster.blocked(from_W, kSunReach_m * to_sun_W, {in_shade.get(), chosen.size()});
   in_sun_.assign(hits_.size(), 0);
   for (std::size_t k = 0; k < chosen.size(); ++k) in_sun_[chosen[k]] = !in_shade[k];
 }

@@ -11,6 +11,14 @@ namespace pllit {
 /// Mirrors below this share are the gloss of paint and varnish, which scatters: nothing is seen in them.
 inline constexpr float kLeastMirror = 0.035F;
 
+/// Whether the sun meets a surface is asked from this near it, and so far.
+inline constexpr double kOffSurface_m = 0.01, kSunReach_m = 150.0;
+
+/// Where a ray has hit, a little off the surface.
+inline Eigen::Vector3d off_surface_W(const Ray& ray, const Hit& hit) {
+  return ray.origin_W + hit.range_m * ray.direction_W + kOffSurface_m * hit.normal_W.cast<double>();
+}
+
 /// The samples of some pixels, gathered into patches: those of one pixel on one surface with one normal at about one
 /// range, or in the sky. One further ray of a kind is cast for a patch, from its first sample.
 class Patches {
