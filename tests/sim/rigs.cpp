@@ -53,6 +53,9 @@ TEST(SimRigs, AreBuiltUnlikeTheirDataSheetWithinTheStatedBounds) {
     EXPECT_NEAR(built.camera()->fx / sheet.camera()->fx, 1.0, 0.003);
     EXPECT_LE(std::abs(to_seconds(built.lidar_clock)), 0.005);
     EXPECT_LE(std::abs(std::log2(built.imu.noise.gyro_density / sheet.imu.noise.gyro_density)), 1.0);
+    EXPECT_NE(built.lidar.unit.range_m, 0.0);
+    EXPECT_EQ(built.lidar.unit.line_range_m.size(), 4U);
+    EXPECT_EQ(without_errors(built).lidar.unit.range_m, 0.0);
   }
   EXPECT_NEAR(least_deg, 0.1, 0.01);
   EXPECT_NEAR(most_deg, 0.3, 0.01);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/world/test_place.hpp"
+
 namespace pllit {
 namespace {
 
@@ -27,6 +29,30 @@ TEST(Sighting, LiesOnTheSideThatWasSeen) {
   Sighting sighting;
   add_side(sighting, 0.3F, 0.4F, 2);
   EXPECT_LT((*sighting.centroid_O() - Vector3d(0.3, 0.2, 0.1)).norm(), 1e-3);
+}
+
+TEST(Sightings, CountThePartOfALongThingThatIsNearEnough) {
+  // A strip on the ground from 8 to 14 m before the camera.
+  testing::ReadyPlace place;
+  place.surfaces_.resize(1);
+  Actor strip{.name = "strip", .mesh_O = {}, .path = {{.at_s = 0.0, .T_W_O = SE3::Identity()}}, .heating = {}};
+  strip.finding = true;
+  testing::add_sheet(strip.mesh_O, {8.0, -0.5, 0.0}, 6.0 * Vector3d::UnitX(), Vector3d::UnitY(), 0);
+  place.actors_.push_back(strip);
+  RayCaster caster(place, 100.0);
+  caster.move_to(Vector3d::Zero(), 1.0);
+  const Camera camera{.width = 640, .height = 512, .fx = 500.0, .fy = 500.0, .cx = 319.5, .cy = 255.5};
+  Matrix3d R_W_C;
+  R_W_C << 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0;
+  const auto seen_from = [&](double x_m) {
+    Sightings sightings(&place);
+    sightings.look(caster, camera, pose_from(SO3(Eigen::Quaterniond(R_W_C)), {x_m, 0.0, 1.5}), 1.0);
+    return sightings.seen().front();
+  };
+  EXPECT_FALSE(seen_from(-2.5).first_s);
+  const Sighting half = seen_from(0.0);
+  EXPECT_EQ(half.first_s, 1.0);
+  EXPECT_NEAR(half.centroid_O()->x(), 0.5 * (8.0 + std::sqrt(100.0 - 2.25)), 0.15) << "all of it: 11";
 }
 
 }  // namespace

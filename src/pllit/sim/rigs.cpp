@@ -119,6 +119,7 @@ SimRig as_built(SimRig rig, std::uint64_t seed) {
   for (double* figure : {&rig.imu.noise.gyro_density, &rig.imu.noise.accel_density, &rig.imu.noise.gyro_bias_walk,
                          &rig.imu.noise.accel_bias_walk})
     *figure *= std::exp2(random.uniform(-1.0, 1.0));
+  rig.lidar.unit = drawn_unit(rig.lidar.tolerance, lines_of(rig.lidar.pattern), random);
   return rig;
 }
 

@@ -44,7 +44,8 @@ SimRig sim_rig(SimConfig::RigName name);
 
 /// The rig as it was really built, unlike its data sheet: the camera is turned by 0.1
 /// to 0.3 degrees and moved by 5 to 15 mm, its focal length is wrong by up to 0.3 %,
-/// the clocks by up to 5 ms, and the IMU's noise is half to twice what was promised.
+/// the clocks by up to 5 ms, the IMU's noise is half to twice what was promised, and the LiDAR is one unit of its
+/// model.
 SimRig as_built(SimRig rig, std::uint64_t seed);
 /// The rig without noise and bias.
 SimRig without_errors(SimRig rig);

@@ -19,6 +19,16 @@ Json noise_json(const ImuNoise& noise) {
           {"accel_bias_walk", noise.accel_bias_walk}};
 }
 
+Json unit_json(const LidarUnit& unit) {
+  Json bend = Json::array();
+  for (const Eigen::Vector2d& part : unit.bend_rad) bend.push_back({part.x(), part.y()});
+  return {{"range_m", unit.range_m},
+          {"line_range_m", unit.line_range_m},
+          {"line_rad", unit.line_rad},
+          {"bend_rad", bend},
+          {"leading_edge", unit.leading_edge}};
+}
+
 Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 Json object_json(const SceneObject& object) {
@@ -52,6 +62,7 @@ Json scene_json(const SceneTruth& truth, std::string_view address) {
                                 {"rotation_max_rad", truth.fit->rotation_max_rad}};
   json["T_I_C"] = {{"known", pose_json(truth.T_I_C_known)}, {"true", pose_json(truth.T_I_C)}};
   json["intrinsics_px"] = {{"known", camera_json(truth.camera_known)}, {"true", camera_json(truth.camera)}};
+  json["lidar_unit"] = unit_json(truth.lidar);
   json["clock_late_s"] = {{"lidar", to_seconds(truth.lidar_clock)}, {"camera", to_seconds(truth.camera_clock)}};
   json["imu_noise"] = {{"known", noise_json(truth.imu_known)}, {"true", noise_json(truth.imu)}};
   json["objects"] = Json::array();

@@ -33,6 +33,7 @@ struct SceneTruth {
   std::optional<FitDistance> fit;
   SE3 T_I_C_known = SE3::Identity(), T_I_C = SE3::Identity();
   Camera camera_known, camera;
+  LidarUnit lidar;
   Duration lidar_clock{0}, camera_clock{0};
   ImuNoise imu_known, imu;
   std::vector<SceneObject> objects;

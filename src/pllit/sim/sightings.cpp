@@ -11,15 +11,17 @@ struct Window {
   int left, top, right, bottom;  // inclusive
 };
 
-/// The pixels that an actor's corners span; nothing where it lies behind the camera, outside the image or too far away.
+/// The pixels that an actor's corners span; nothing where it lies behind the camera, outside the image or all of it too
+/// far away.
 std::optional<Window> window_of(const Actor& actor, const Camera& camera, const SE3& T_C_O) {
   Eigen::AlignedBox2d box;
+  bool near = false;
   for (const Eigen::Vector3f& vertex : actor.mesh_O.vertices) {
     const Vector3d p_C = T_C_O.act(vertex.cast<double>());
-    if (p_C.norm() > Sightings::kFarthest_m) return std::nullopt;
+    near |= p_C.norm() <= Sightings::kFarthest_m;
     if (const auto pixel = camera.project(p_C)) box.extend(*pixel);
   }
-  if (box.isEmpty()) return std::nullopt;
+  if (!near || box.isEmpty()) return std::nullopt;
   const Eigen::AlignedBox2d image(Eigen::Vector2d::Zero(), Eigen::Vector2d(camera.width - 1.0, camera.height - 1.0));
   const Eigen::AlignedBox2d seen = box.intersection(image);
   if (seen.isEmpty()) return std::nullopt;
@@ -27,7 +29,7 @@ std::optional<Window> window_of(const Actor& actor, const Camera& camera, const 
   return Window{floor_of(seen.min().x()), floor_of(seen.min().y()), floor_of(seen.max().x()), floor_of(seen.max().y())};
 }
 
-/// Points of an actor that every step-th pixel of a window shows, in its own frame; no more than `most`.
+/// Points of an actor, near enough, that every step-th pixel of a window shows, in its own frame; no more than `most`.
 std::vector<Vector3f> points_in(const Window& window, int step, std::size_t most, std::uint32_t actor,
                                 const RayCaster& caster, const Camera& camera, const SE3& T_W_C) {
   const Matrix3d R_W_C = T_W_C.rotation();
@@ -35,7 +37,8 @@ std::vector<Vector3f> points_in(const Window& window, int step, std::size_t most
   for (int v = window.top; v <= window.bottom; v += step)
     for (int u = window.left; u <= window.right && points_O.size() < most; u += step) {
       const Hit hit = caster.cast(Ray{T_W_C.translation(), R_W_C * camera.ray({u, v})});
-      if (hit && hit.actor == actor) points_O.push_back(hit.p_own);
+      const bool near = hit && static_cast<double>(hit.range_m) <= Sightings::kFarthest_m;
+      if (near && hit.actor == actor) points_O.push_back(hit.p_own);
     }
   return points_O;
 }

@@ -36,7 +36,7 @@ class Sighting {
 class Sightings {
  public:
   static constexpr int kPixels = 25;           ///< unoccluded ones that make a sighting
-  static constexpr double kFarthest_m = 10.0;  ///< what is farther away is not watched
+  static constexpr double kFarthest_m = 10.0;  ///< what of it is farther away is not counted
 
   explicit Sightings(const Place* place) : place_(place), seen_(place ? place->actors().size() : 0) {}
 

@@ -241,6 +241,7 @@ SceneTruth Simulation::scene_truth() const {
   truth.T_I_C = parts.built.T_I_C;
   truth.camera_known = *parts.known.camera();
   truth.camera = *parts.built.camera();
+  truth.lidar = parts.built.lidar.unit;
   truth.lidar_clock = parts.built.lidar_clock;
   truth.camera_clock = parts.built.camera_clock;
   truth.objects = objects_of(*parts.around->place, findings_of(parts.config), parts.sightings->seen(), path_W);

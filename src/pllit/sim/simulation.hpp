@@ -21,7 +21,7 @@
 namespace pllit {
 
 /// Of everything that the simulator makes: raised when the same address gives other bytes.
-inline constexpr int kSimulatorVersion = 5;
+inline constexpr int kSimulatorVersion = 6;
 
 /// Events in the order received: IMU samples at their time, scans when their turn is complete (after an IMU sample of
 /// the same time), images at theirs. They are made as they are asked for, so memory does not grow with the duration;

@@ -6,6 +6,7 @@
 
 #include "pllit/base/error.hpp"
 #include "pllit/sim/world/lidar_patterns.hpp"
+#include "pllit/sim/world/lidar_unit.hpp"
 
 namespace pllit {
 
@@ -24,6 +25,8 @@ struct RayLidar {
   bool strongest_return = false;  ///< of several returns the strongest is reported, else the first
   float counts_at_white =
       255.0F;  ///< intensity as written of a surface that reflects everything and faces the beam; 0 to 255
+  UnitTolerance tolerance{};  ///< how far units lie apart
+  LidarUnit unit{};           ///< which one this is: in models, one without errors of its own
 };
 
 /// The pattern alone: no noise, no divergence, every surface seen at every range.

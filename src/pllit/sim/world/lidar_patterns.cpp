@@ -79,6 +79,12 @@ Vector3d behind_nodding_mirror(const Laser& laser, Duration time) {
 
 }  // namespace
 
+std::size_t lines_of(const BeamPattern& pattern) {
+  std::size_t lines = 0;
+  for (const BeamPattern::Laser& laser : pattern.lasers) lines = std::max<std::size_t>(lines, laser.line + 1U);
+  return lines;
+}
+
 std::int64_t first_shot_of(const BeamPattern& pattern, std::int64_t scan) {
   return (scan * pattern.scan_period + pattern.shot_period - Duration(1)) / pattern.shot_period;
 }

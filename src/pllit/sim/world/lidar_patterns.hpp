@@ -39,6 +39,9 @@ struct BeamPattern {
   std::vector<Laser> lasers;  ///< in the order in which they fire
 };
 
+/// How many lines, or rings, it has.
+std::size_t lines_of(const BeamPattern& pattern);
+
 /// Shots are counted from the moment that the LiDAR was switched on, when scan 0 began, and go on without regard to
 /// scans: where a shot does not end with the scan, as in Velodynes, or the pattern does not repeat, as in Livoxes,
 /// every scan is another.

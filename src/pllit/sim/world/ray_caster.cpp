@@ -228,6 +228,9 @@ Hit RayCaster::cast(const Ray& ray) const {
 }
 
 void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
+  RTCIntersectArguments side_by_side;
+  rtcInitIntersectArguments(&side_by_side);
+  side_by_side.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   for (std::size_t begin = 0; begin < rays.size(); begin += kPacket) {
     const std::size_t count = std::min(kPacket, rays.size() - begin);
     alignas(32) std::array<int, kPacket> valid{};
@@ -237,7 +240,7 @@ void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
       put(answer.ray, i, scene_->going(rays[begin + i]));
       answer.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect8(valid.data(), scene_->top.get(), &answer);
+    rtcIntersect8(valid.data(), scene_->top.get(), &answer, &side_by_side);
     const RTCHit8& hit = answer.hit;
     for (std::size_t i = 0; i < count; ++i)
       hits[begin + i] = hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
@@ -255,6 +258,9 @@ bool RayCaster::blocked(const Vector3d& from_W, const Vector3d& to_W) const {
 }
 
 void RayCaster::blocked(std::span<const Vector3d> from_W, const Vector3d& way_W, std::span<bool> answers) const {
+  RTCOccludedArguments side_by_side;
+  rtcInitOccludedArguments(&side_by_side);
+  side_by_side.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   for (std::size_t begin = 0; begin < from_W.size(); begin += kPacket) {
     const std::size_t count = std::min(kPacket, from_W.size() - begin);
     alignas(32) std::array<int, kPacket> valid{};
@@ -264,7 +270,7 @@ void RayCaster::blocked(std::span<const Vector3d> from_W, const Vector3d& way_W,
       valid[i] = ray.tfar > ray.tnear ? -1 : 0;
       put(rays, i, ray);
     }
-    rtcOccluded8(valid.data(), scene_->top.get(), &rays);
+    rtcOccluded8(valid.data(), scene_->top.get(), &rays, &side_by_side);
     for (std::size_t i = 0; i < count; ++i) answers[begin + i] = valid[i] != 0 && rays.tfar[i] < 0.0F;
   }
 }

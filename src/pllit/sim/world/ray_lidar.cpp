@@ -20,6 +20,11 @@ constexpr float kSameSurface_m = 0.02F, kSameSurfaceShare = 0.002F;
 /// Relative error of intensity, uniform within.
 constexpr double kIntensityError = 0.05;
 
+/// Cosine of incidence below which a surface stretches pulses no further.
+constexpr double kLeastFacing = 0.01;
+/// Square of a spread, in widths of the pulse, that is left alone: it moves the edge by half a thousandth of a width.
+constexpr double kLeastSpread = 4e-4;
+
 /// Share of the power of each ray at a beam's side, a third of the full divergence off its middle: about a Gaussian's.
 constexpr double kSideShare = 0.15, kSideAngle = 1.0 / 3.0;
 
@@ -153,8 +158,9 @@ class Scanner {
   /// The ray that a beam really is.
   Ray sent(const Beam& beam, Random noise) const {
     const Across across(beam.direction_L);
-    const double left = lidar_.beam_sigma_rad * quick_gaussian(noise),
-                 up = lidar_.beam_sigma_rad * quick_gaussian(noise);
+    const Eigen::Vector2d own = lidar_.unit.aside_rad(beam);
+    const double left = own.x() + lidar_.beam_sigma_rad * quick_gaussian(noise),
+                 up = own.y() + lidar_.beam_sigma_rad * quick_gaussian(noise);
     return ray(beam, beam.direction_L + left * across.left_L + up * across.up_L);
   }
 
@@ -176,9 +182,29 @@ class Scanner {
         const double middle_share = 1.0 - kSideShare * static_cast<double>(aside.size());
         echoes.add(run_.caster, surfaces_, batch_.rays[i], batch_.hits[i], middle_share);
         for (const Ray& ray : aside) echoes.add(run_.caster, surfaces_, ray, run_.caster.cast(ray), kSideShare);
-        if (!echoes.empty())
-          points_[i] = point(batch_.beams[i], echoes, random(first + static_cast<std::int64_t>(shot), order_[row], 1));
+        if (echoes.empty()) continue;
+        const double offset_m = lidar_.unit.offset_m(batch_.beams[i]) - (aside.empty() ? slant_m(i) : 0.0);
+        points_[i] =
+            point(batch_.beams[i], echoes, offset_m, random(first + static_cast<std::int64_t>(shot), order_[row], 1));
       }
+  }
+
+  /// By how much a pulse on one surface is measured too near. Beams are taken to be broad along the horizon and upright
+  /// as in the LiDAR held level.
+  double slant_m(std::size_t pulse) const {
+    const Hit& hit = batch_.hits[pulse];
+    if (!hit || lidar_.unit.leading_edge <= 0.0) return 0.0;
+    const Vector3d &direction_W = batch_.rays[pulse].direction_W, normal_W = hit.normal_W.cast<double>();
+    const double facing = -direction_W.dot(normal_W);
+    // The full angle at 1/e2 of the power is four standard deviations of it.
+    const double stretch_m = 0.25 * hit.range_m / std::max(facing, kLeastFacing);
+    const double most_m = stretch_m * std::max(lidar_.divergence_left_rad, lidar_.divergence_up_rad);
+    if (most_m * most_m * (1.0 - facing * facing) < kLeastSpread * lidar_.pulse_m * lidar_.pulse_m) return 0.0;
+    const Vector3d slope_W = normal_W + facing * direction_W, up_W = Across(direction_W).up_L;
+    const double up = lidar_.divergence_up_rad * slope_W.dot(up_W),
+                 left2 = std::max(0.0, slope_W.squaredNorm() - slope_W.dot(up_W) * slope_W.dot(up_W));
+    const double divergence2 = up * up + left2 * lidar_.divergence_left_rad * lidar_.divergence_left_rad;
+    return slant_bias_m(lidar_.unit.leading_edge, lidar_.pulse_m, stretch_m * std::sqrt(divergence2));
   }
 
   /// Pulses, ascending, some of whose neighbours, before and after them or on the lines beside them, lie on other
@@ -202,12 +228,13 @@ class Scanner {
     return pulses;
   }
 
-  std::optional<Point> point(const Beam& beam, Echoes& echoes, Random random) const {
+  /// offset_m: by which the unit's ranges are wrong there.
+  std::optional<Point> point(const Beam& beam, Echoes& echoes, double offset_m, Random random) const {
     const double luck = quick_gaussian(random), range_error = quick_gaussian(random),
                  intensity_error = random.uniform(-1.0, 1.0);
     const std::optional<Echo> echo = echoes.reported(lidar_, luck);
     if (!echo) return std::nullopt;
-    double range_m = echo->range_m + lidar_.range_sigma_m * range_error;
+    double range_m = echo->range_m + offset_m + lidar_.range_sigma_m * range_error;
     if (lidar_.range_step_m > 0.0) range_m = lidar_.range_step_m * std::round(range_m / lidar_.range_step_m);
     if (range_m <= 0.0 || range_m < lidar_.min_range_m || range_m > lidar_.max_range_m) return std::nullopt;
     const double brightness = echo->brightness * (1.0 + kIntensityError * intensity_error);

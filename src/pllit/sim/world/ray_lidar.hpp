@@ -23,9 +23,9 @@ struct LidarRun {
 /// Scan `index` with every pulse sent from the rig's pose at its own time; actors move in steps of 5 ms,
 /// and where none moves, things appear in steps of 25 ms. Where the pulses beside it, or above and below it, lie on
 /// other surfaces than a pulse does, it is split into three or five rays inside its divergence, so that edges give
-/// mixed points. Intensity is what the sensor would write: whole counts of reflectivity times cosine of incidence,
-/// range compensated. Textures do not vary it. The same seed gives the same bytes, whatever the number of threads.
-/// Every point has its ring.
+/// mixed points; elsewhere a slanting surface stretches it (lidar_unit.hpp). Intensity is what the sensor would write:
+/// whole counts of reflectivity times cosine of incidence, range compensated. Textures do not vary it. The same seed
+/// gives the same bytes, whatever the number of threads. Every point has its ring.
 LidarScan simulate_scan(const RayLidar& lidar, const LidarRun& run, std::int64_t index, Arena& arena);
 
 }  // namespace pllit
