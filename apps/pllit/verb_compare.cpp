@@ -26,7 +26,8 @@ using Json = nlohmann::ordered_json;
 struct CompareOptions {
   std::string baseline;
   std::vector<std::string> sessions;
-  std::string regions, store;
+  std::optional<std::string> regions;
+  std::string store;
   bool json = false, alarm_exit = false;
 };
 
@@ -137,6 +138,7 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
               {"gain", found.drift.whole().curve.gain},
               {"bias", found.drift.whole().curve.bias},
               {"rms", found.drift.whole().rms}}},
+            {"unit", name_of(baseline.thermography.unit)},
             {"changes", Json::array()}};
   for (const VisitChange& change : found.changes) json["changes"].push_back(change_json(change));
   if (!regions) return json;
@@ -149,9 +151,9 @@ Expected<Json> compared(const Visit& baseline, const std::string& baseline_folde
 std::string visit_text(const Json& visit) {
   const int shared = visit["voxels"]["shared"], missed = visit["voxels"]["not_seen_again"];
   std::string text =
-      std::format("{}\n  found its place: {} of {} places agree, {:.0f} mm across surfaces\n",
+      std::format("{}\n  found its place: {} of {} places agree, {:.0f} % of its surfaces are on the baseline's\n",
                   visit["session"].get<std::string>(), visit["relocalisation"]["agreeing"].get<int>(),
-                  visit["relocalisation"]["places"].get<int>(), 1e3 * visit["relocalisation"]["rmse_m"].get<double>());
+                  visit["relocalisation"]["places"].get<int>(), 100.0 * visit["surfaces_shared"].get<double>());
   text += std::format("  images showed again: {:.0f} % of what the baseline's did ({} voxels)\n",
                       100.0 * shared / std::max(1, shared + missed), shared);
   if (!visit["drift"]["holds"].get<bool>())
@@ -167,20 +169,21 @@ std::string visit_text(const Json& visit) {
       continue;
     }
     text += std::format(
-        "  {:8} at ({:.2f}, {:.2f}, {:.2f}) m: {:+.1f} on average, {:+.1f} at most, {:.1f} sigma, {} voxels\n",
+        "  {:8} at ({:.2f}, {:.2f}, {:.2f}) m: {:+.1f} {} on average, {:+.1f} at most, {:.1f} sigma, {} voxels\n",
         change["kind"].get<std::string>(), p[0], p[1], p[2], change["change"]["mean"].get<double>(),
-        change["change"]["peak"].get<double>(), change["change_sigmas"]["mean"].get<double>(),
-        change["voxels"].get<int>());
+        visit["unit"].get<std::string>(), change["change"]["peak"].get<double>(),
+        change["change_sigmas"]["mean"].get<double>(), change["voxels"].get<int>());
   }
   return text + (visit["changes"].empty() ? "  nothing has changed\n" : "");
 }
 
 Expected<ExitCode> compare(const CompareOptions& options) {
+  if (options.regions && options.regions->empty()) return input_error("--regions: the name of the file is empty");
   const auto baseline = read_visit(options.baseline);
   if (!baseline) return std::unexpected(baseline.error());
   std::optional<RegionComparison> regions;
-  if (!options.regions.empty()) {
-    auto opened = RegionComparison::open(options.regions, options.store, baseline->session, baseline->seen.heat);
+  if (options.regions) {
+    auto opened = RegionComparison::open(*options.regions, options.store, baseline->session, baseline->seen.heat);
     if (!opened) return std::unexpected(opened.error());
     regions.emplace(std::move(*opened));
   }

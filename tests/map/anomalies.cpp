@@ -17,23 +17,27 @@ bool is_alarm(const AnomalyDetector& detector) {
 
 /// Whether an alarm is raised for 3 x 3 voxels of a wall that show 100, and from the sixth second on 160, while a
 /// camera walks by; within a few pixels of them the image shows less all the time, by as much as `dip_of(y, z)` says.
+/// The rest of the wall shows `around`, if anything.
 template <class Dip>
-bool is_alarm_where_less_is_beside(const Dip& dip_of) {
+bool is_alarm_where_less_is_beside(const Dip& dip_of, std::optional<float> around = std::nullopt,
+                                   const AnomalyConfig& config = {}) {
   ThermalMap map({});
   const SightLog past({});
-  AnomalyDetector detector({});
+  AnomalyDetector detector(config);
   for (int image = 0; image < 90; ++image) {
     const Time time{std::chrono::milliseconds(100 * image)};
     ThermalView view{.time = time, .viewpoint_W = Vector3d(0.0, 0.1 * image, 0.0)};
+    const auto show = [&](int y, int z, float grey, float dip) {
+      view.observations.push_back({.p_W = Vector3d(3.0, 0.125 + 0.05 * y, 0.125 + 0.05 * z),
+                                   .pixel_px = {0.0F, 0.0F},
+                                   .intensity = grey,
+                                   .dip = dip,
+                                   .raw = grey});
+    };
     for (int y = -1; y <= 1; ++y)
-      for (int z = -1; z <= 1; ++z) {
-        const float grey = image < 60 ? 100.0F : 160.0F;
-        view.observations.push_back({.p_W = Vector3d(3.0, 0.125 + 0.05 * y, 0.125 + 0.05 * z),
-                                     .pixel_px = {0.0F, 0.0F},
-                                     .intensity = grey,
-                                     .dip = image < 60 ? 0.0F : dip_of(y, z),
-                                     .raw = grey});
-      }
+      for (int z = -1; z <= 1; ++z) show(y, z, image < 60 ? 100.0F : 160.0F, image < 60 ? 0.0F : dip_of(y, z));
+    for (int y = 5; around && y < 25; ++y)
+      for (int z = -10; z < 10; ++z) show(y, z, *around, 0.0F);
     const auto seen = map.integrate(view);
     const Sight sight = sight_of(time, view.viewpoint_W, {}, past.config());
     detector.update({.map = map, .seen = seen, .sight = sight, .past = past}, view);
@@ -52,6 +56,16 @@ TEST(Anomalies, AreNotWhatMayAllBeAnEdgeThatIsSeenAFewPixelsOff) {
   EXPECT_FALSE(is_alarm_where_less_is_beside(but_for_the_first(0)));
   EXPECT_FALSE(is_alarm_where_less_is_beside(but_for_the_first(2))) << "two voxels of nine are not enough";
   EXPECT_TRUE(is_alarm_where_less_is_beside(but_for_the_first(3)));
+}
+
+TEST(Anomalies, InVideoAreOnlyWhatOutshinesNearlyAllAroundIt) {
+  const auto none = [](int, int) { return 0.0F; };
+  AnomalyConfig video;
+  video.min_rank = 0.95;
+  EXPECT_TRUE(is_alarm_where_less_is_beside(none, 90.0F, video));
+  EXPECT_FALSE(is_alarm_where_less_is_beside(none, 200.0F, video));
+  EXPECT_FALSE(is_alarm_where_less_is_beside(none, std::nullopt, video)) << "nothing to compare it with";
+  EXPECT_TRUE(is_alarm_where_less_is_beside(none, 200.0F)) << "other units know how much a change is";
 }
 
 /// A hot box stands before a wall after 20 s, of which a camera that has learned the wall sees some columns at times.

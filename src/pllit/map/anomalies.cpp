@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
 #include "pllit/map/even_centroid.hpp"
@@ -25,7 +26,7 @@ struct Members {
   int all = 0, left = 0, hot = 0, known = 0, new_surfaces = 0, lasting = 0;
   bool seen_hot_now = false;
   double change = 0.0, sigmas = 0.0, peak_change = 0.0, peak_sigmas = 0.0;
-  double own_change = 0.0, own_sigmas = 0.0;  ///< of those that are no mere parts
+  double own_change = 0.0, own_sigmas = 0.0, own_level = 0.0;  ///< of those that are no mere parts
   Eigen::AlignedBox3d box_W;
 
   void add(const WatchedVoxel& watched, Time now, double dwell_s) {
@@ -43,6 +44,7 @@ struct Members {
     if (!watched.joined) {
       own_change += watched.change;
       own_sigmas += in_sigmas;
+      own_level += watched.normal + watched.change;
     }
     peak_change = std::max(peak_change, static_cast<double>(watched.peak));
     peak_sigmas = std::max(peak_sigmas, static_cast<double>(watched.peak / watched.sigma));
@@ -52,19 +54,18 @@ struct Members {
 
 /// How an anomaly stands: by those of its voxels that were seen when it was last looked at, if these are enough of it.
 /// The others may not have been seen since it cooled.
-AnomalyState state_of(const Watch& watch, std::uint32_t id) {
+AnomalyState state_of(std::span<WatchedVoxel* const> parts) {
   constexpr double kOneLook_s = 5.0;
   constexpr int kEnough = 5;  // one of so many
   Time seen{};
-  for (const auto& [key, watched] : watch)
-    if (watched.owner == id && !watched.vacated) seen = std::max(seen, watched.seen);
+  for (const WatchedVoxel* part : parts)
+    if (!part->vacated) seen = std::max(seen, part->seen);
   int all = 0, left = 0, hot = 0, in_view = 0, hot_in_view = 0;
-  for (const auto& [key, watched] : watch) {
-    if (watched.owner != id) continue;
+  for (const WatchedVoxel* part : parts) {
     ++all;
-    left += watched.vacated ? 1 : 0;
-    if (watched.vacated) continue;
-    const int is_hot = watched.hot ? 1 : 0, is_seen = to_seconds(seen - watched.seen) < kOneLook_s ? 1 : 0;
+    left += part->vacated ? 1 : 0;
+    if (part->vacated) continue;
+    const int is_hot = part->hot ? 1 : 0, is_seen = to_seconds(seen - part->seen) < kOneLook_s ? 1 : 0;
     hot += is_hot;
     in_view += is_seen;
     hot_in_view += is_hot * is_seen;
@@ -75,27 +76,24 @@ AnomalyState state_of(const Watch& watch, std::uint32_t id) {
   return 2 * judged_hot < judged ? AnomalyState::cooling : AnomalyState::confirmed;
 }
 
-Members members_of(const Watch& watch, std::uint32_t id, Time now, double dwell_s) {
+Members members_of(std::span<WatchedVoxel* const> parts, Time now, double dwell_s) {
   Members members;
-  for (const auto& [key, watched] : watch)
-    if (watched.owner == id) members.add(watched, now, dwell_s);
+  for (const WatchedVoxel* part : parts) members.add(*part, now, dwell_s);
   return members;
 }
 
 /// Where the hot voxels of an anomaly are.
-EvenCentroid place_of(const Watch& watch, std::uint32_t id, double cell_m) {
+EvenCentroid place_of(std::span<WatchedVoxel* const> parts, double cell_m) {
   EvenCentroid place(cell_m);
-  for (const auto& [key, watched] : watch)
-    if (watched.owner == id && watched.hot) place.add(watched.position_W);
+  for (const WatchedVoxel* part : parts)
+    if (part->hot) place.add(part->position_W);
   return place;
 }
 
 /// Voxels judged by themselves of which so much of the change is left however they lie to the edges of the image.
-int sure_seeds(const Watch& watch, std::uint32_t id, double least) {
-  return static_cast<int>(std::ranges::count_if(watch, [&](const auto& entry) {
-    const WatchedVoxel& watched = entry.second;
-    const bool seed = watched.owner == id && watched.hot && !watched.joined;
-    return seed && static_cast<double>(watched.sure) >= least;
+int sure_seeds(std::span<WatchedVoxel* const> parts, double least) {
+  return static_cast<int>(std::ranges::count_if(parts, [&](const WatchedVoxel* part) {
+    return part->hot && !part->joined && static_cast<double>(part->sure) >= least;
   }));
 }
 
@@ -143,15 +141,23 @@ void AnomalyDetector::update(const WatchInput& input, const ThermalView& view) {
     const std::uint32_t id = owner_of(cluster, view).anomaly.id;
     for (const VoxelKey key : cluster) watch_.at(key).owner = id;
   }
+  std::map<std::uint32_t, Parts> parts_of = parts_by_owner();
   for (auto& [id, track] : tracks_) {
-    measure(track, view);
-    settle(track, view.time, input.map.config());
+    measure(track, parts_of[id], view);
+    settle(track, parts_of[id], view.time, input.map);
     if (track.anomaly.last_seen != view.time) continue;
     const auto crop = crop_of(watch_, id, view, input.map.config().voxel_m);
     std::optional<ImageCrop>& best = track.anomaly.crop;
     if (crop && (!best || crop->width * crop->height > best->width * best->height)) best = crop;
   }
-  drop_vanished(view.time);
+  drop_vanished(view.time, parts_of);
+}
+
+std::map<std::uint32_t, AnomalyDetector::Parts> AnomalyDetector::parts_by_owner() {
+  std::map<std::uint32_t, Parts> parts_of;
+  for (auto& [key, watched] : watch_)
+    if (watched.owner != 0) parts_of[watched.owner].push_back(&watched);
+  return parts_of;
 }
 
 std::vector<Anomaly> AnomalyDetector::anomalies() const {
@@ -203,14 +209,14 @@ AnomalyDetector::Track& AnomalyDetector::new_track(const Cluster& cluster, const
   return tracks_.emplace(id, track).first->second;
 }
 
-void AnomalyDetector::measure(Track& track, const ThermalView& view) {
+void AnomalyDetector::measure(Track& track, const Parts& parts, const ThermalView& view) {
   constexpr double kViewSpacing_m = 0.25;
   Anomaly& anomaly = track.anomaly;
-  const Members members = members_of(watch_, anomaly.id, view.time, config_.dwell_s);
+  const Members members = members_of(parts, view.time, config_.dwell_s);
   if (members.hot == 0 || !members.seen_hot_now) return;
   const double n = members.hot;
   anomaly.kind = members.new_surfaces > members.known ? AnomalyKind::new_hot : AnomalyKind::heated;
-  const EvenCentroid place = place_of(watch_, anomaly.id, config_.place_cell_m);
+  const EvenCentroid place = place_of(parts, config_.place_cell_m);
   anomaly.position_W = place.centroid_W();
   anomaly.covariance_m2 =
       place.covariance_m2() + config_.registration_m * config_.registration_m * Matrix3d::Identity();
@@ -229,38 +235,50 @@ void AnomalyDetector::measure(Track& track, const ThermalView& view) {
   anomaly.confidence = confidence(anomaly);
 }
 
-void AnomalyDetector::settle(Track& track, Time now, const ThermalMapConfig& map) const {
+/// Whether hardly anything around is normally as bright.
+bool AnomalyDetector::stands_out(const Track& track, double level, const ThermalMap& map) const {
+  if (config_.min_rank <= 0.0) return true;
+  const auto rank = map.rank(level, track.anomaly.position_W, config_.rank_radius_m, [&](VoxelKey key) {
+    const auto found = watch_.find(key);
+    return found != watch_.end() && found->second.owner == track.anomaly.id;
+  });
+  return rank && *rank >= config_.min_rank;
+}
+
+void AnomalyDetector::settle(Track& track, const Parts& parts, Time now, const ThermalMap& map) const {
   constexpr int kStillFrames = 15;  // a rig that stands sees it in all of them, one that passes by in a few
   constexpr int kFewestSeeds = 2;
   Anomaly& anomaly = track.anomaly;
   if (anomaly.state != AnomalyState::fresh) {
-    anomaly.state = state_of(watch_, anomaly.id);
+    anomaly.state = state_of(parts);
     return;
   }
-  const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
+  const Members members = members_of(parts, now, config_.dwell_s);
   const bool stays = members.left <= config_.max_leaving * members.all;
   if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
   const int seeds = members.known + members.new_surfaces;
-  if (members.own_change < map.model.min_change * seeds || members.own_sigmas < config_.min_sigmas * seeds) return;
+  const VoxelModelConfig& model = map.config().model;
+  if (members.own_change < model.min_change * seeds || members.own_sigmas < config_.min_sigmas * seeds) return;
   if (seeds < std::clamp(members.hot / config_.watch.parts_of_one, kFewestSeeds, config_.enough_seeds)) return;
-  const int sure = sure_seeds(watch_, anomaly.id, config_.sure_change * map.model.min_change);
+  const int sure = sure_seeds(parts, config_.sure_change * model.min_change);
   if (sure < kFewestSeeds || 3 * sure < seeds) return;
-  const int views = is_thin(anomaly, map.voxel_m) ? 2 * config_.min_views : config_.min_views;
+  const int views = is_thin(anomaly, map.config().voxel_m) ? 2 * config_.min_views : config_.min_views;
   const bool watched_long =
       to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;
   if (anomaly.views < views && !watched_long) return;
+  if (!stands_out(track, members.own_level / seeds, map)) return;
   anomaly.state = AnomalyState::confirmed;
   anomaly.confirmed = now;
 }
 
-void AnomalyDetector::drop_vanished(Time now) {
+void AnomalyDetector::drop_vanished(Time now, const std::map<std::uint32_t, Parts>& parts_of) {
   std::erase_if(tracks_, [&](const auto& entry) {
     const Anomaly& anomaly = entry.second.anomaly;
     if (anomaly.state != AnomalyState::fresh) return false;
-    const Members members = members_of(watch_, anomaly.id, now, config_.dwell_s);
-    if (members.hot > 0 && to_seconds(now - anomaly.last_seen) < config_.forget_fresh_s) return false;
-    for (auto& [key, watched] : watch_)
-      if (watched.owner == anomaly.id) watched.owner = 0;
+    const Parts& parts = parts_of.at(anomaly.id);
+    const bool any_hot = std::ranges::any_of(parts, &WatchedVoxel::hot);
+    if (any_hot && to_seconds(now - anomaly.last_seen) < config_.forget_fresh_s) return false;
+    for (WatchedVoxel* part : parts) part->owner = 0;
     return true;
   });
 }

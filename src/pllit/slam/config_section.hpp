@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,6 +46,16 @@ class Section {
   void choose(std::string_view name, E& member, std::span<const std::string_view> words, std::string_view doc) {
     const Choice choice{words, [&member] { return static_cast<std::size_t>(member); },
                         [&member](std::size_t index) { member = static_cast<E>(index); }};
+    list_.keys.push_back({prefix_ + std::string(name), choice, std::string(doc), "", {}});
+  }
+  /// The first word leaves it open.
+  template <class E>
+  void choose(std::string_view name, std::optional<E>& member, std::span<const std::string_view> words,
+              std::string_view doc) {
+    const Choice choice{words, [&member] { return member ? static_cast<std::size_t>(*member) + 1 : 0; },
+                        [&member](std::size_t index) {
+                          member = index == 0 ? std::optional<E>() : std::optional(static_cast<E>(index - 1));
+                        }};
     list_.keys.push_back({prefix_ + std::string(name), choice, std::string(doc), "", {}});
   }
 

@@ -9,21 +9,9 @@ void fill(double& threshold, double value) {
   if (threshold == 0.0) threshold = value;
 }
 
-AnchorConfig::Shape shape_of(const ThermographyConfig& config) {
+AnchorConfig::Shape usual_shape(IntensityUnit unit) {
   using Shape = AnchorConfig::Shape;
-  switch (config.anchor_choice) {
-    case AnchorChoice::bias:
-      return Shape::bias;
-    case AnchorChoice::affine:
-      return Shape::affine;
-    case AnchorChoice::curve:
-      return Shape::curve;
-    case AnchorChoice::automatic:
-      break;
-  }
-  return config.unit == IntensityUnit::grey    ? Shape::curve
-         : config.unit == IntensityUnit::count ? Shape::affine
-                                               : Shape::bias;
+  return unit == IntensityUnit::grey ? Shape::curve : unit == IntensityUnit::count ? Shape::affine : Shape::bias;
 }
 
 }  // namespace
@@ -61,7 +49,7 @@ ThermographyConfig by_unit(ThermographyConfig config, IntensityUnit unit) {
                                                          : kUsual;
   VoxelModelConfig& model = config.map.model;
   WatchConfig& watch = config.anomalies.watch;
-  config.anchor.shape = shape_of(config);
+  config.anchor.shape = config.anchor_choice.value_or(usual_shape(unit));
   fill(model.noise, grey ? 6.0 : 0.3 * kelvin);
   fill(model.min_change, grey ? 30.0 : 3.0 * kelvin);
   fill(model.adaptation, grey ? 0.02 : 0.005);
@@ -72,6 +60,7 @@ ThermographyConfig by_unit(ThermographyConfig config, IntensityUnit unit) {
   watch.bent_curves = config.anchor.shape == AnchorConfig::Shape::curve;
   if (model.learned_views == 0) model.learned_views = grey ? 2 : 1;  // one good reading says more than many of video
   if (!grey) model.passing_images = 2;
+  config.anomalies.min_rank = grey ? 0.95 : 0.0;
   if (!watch.bent_curves) {
     watch.least_past_s = 1.0;
     watch.whole_things = true;

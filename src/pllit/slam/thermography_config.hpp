@@ -1,6 +1,8 @@
 // What a user may set of the thermographic stage.
 #pragma once
 
+#include <optional>
+
 #include "pllit/map/anchor.hpp"
 #include "pllit/map/anomalies.hpp"
 #include "pllit/map/radiometry.hpp"
@@ -12,9 +14,6 @@ namespace pllit {
 /// What the camera's numbers are, or by their depth: 8-bit images are greys, others counts. Light is no heat, whatever
 /// its numbers: thermography is not for it.
 enum class UnitChoice { automatic, grey, count, kelvin, light };
-
-/// AnchorConfig::Shape, or the one that suits the unit.
-enum class AnchorChoice { automatic, bias, affine, curve };
 
 struct ThermographyConfig {
   UnitChoice unit_choice = UnitChoice::automatic;
@@ -28,7 +27,7 @@ struct ThermographyConfig {
   SamplingConfig sampling;
   ThermalMapConfig map;
   AnchorConfig anchor;
-  AnchorChoice anchor_choice = AnchorChoice::automatic;  ///< what by_unit() makes of it holds
+  std::optional<AnchorConfig::Shape> anchor_choice;  ///< else by_unit() takes the one that suits the unit
   SightConfig sights;
   AnomalyConfig anomalies;
   RecentSurfaceConfig surface;
