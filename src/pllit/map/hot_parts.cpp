@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <unordered_set>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
 
@@ -105,6 +106,34 @@ bool may_be_part(const ThermalVoxel& voxel, float coolest, float least, const Wa
   return voxel.mean - coolest >= least || (config.whole_things && voxel.last - voxel.mean > least);
 }
 
+/// Blocks of voxels that hold something hot, so that most voxels need not look around themselves.
+class HotBlocks {
+ public:
+  explicit HotBlocks(const Watch& watch) {
+    for (const auto& [key, watched] : watch)
+      if (watched.hot) add(key);
+  }
+  void add(VoxelKey key) { blocks_.insert(voxel_key(block_of(voxel_of_key(key)))); }
+  /// Whether a block within so many voxels does.
+  bool near(VoxelKey key, int reach) const {
+    const Eigen::Vector3i voxel = voxel_of_key(key), low = block_of(voxel.array() - reach),
+                          high = block_of(voxel.array() + reach);
+    for (int z = low.z(); z <= high.z(); ++z)
+      for (int y = low.y(); y <= high.y(); ++y)
+        for (int x = low.x(); x <= high.x(); ++x)
+          if (blocks_.contains(voxel_key({x, y, z}))) return true;
+    return false;
+  }
+
+ private:
+  static Eigen::Vector3i block_of(const Eigen::Vector3i& voxel) {
+    constexpr int kSideBits = 2;
+    return voxel.unaryExpr([](int i) { return i >> kSideBits; });
+  }
+
+  std::unordered_set<VoxelKey> blocks_;
+};
+
 bool take_in_beside_hot(Watch& watch, Things& things, VoxelKey key, const WatchInput& input,
                         const WatchConfig& config) {
   const ThermalVoxel& voxel = *input.map.find(key);
@@ -135,9 +164,12 @@ void take_in_parts(Watch& watch, std::vector<VoxelKey> fresh, const WatchInput& 
   const float least = part_change(input.map.config().model, config);
   float coolest = coolest_normal(watch);
   Things things = things_of(watch);
+  HotBlocks hot_blocks(watch);
   for (const VoxelKey key : input.seen) {
-    if (!may_be_part(*input.map.find(key), coolest, least, config) || watch.contains(key)) continue;
+    if (!hot_blocks.near(key, config.part_voxels) || watch.contains(key)) continue;
+    if (!may_be_part(*input.map.find(key), coolest, least, config)) continue;
     if (!take_in_beside_hot(watch, things, key, input, config)) continue;
+    hot_blocks.add(key);
     coolest = std::min(coolest, watch.at(key).normal);
     fresh.push_back(key);
   }
