@@ -58,13 +58,13 @@ TEST(Anomalies, AreNotWhatMayAllBeAnEdgeThatIsSeenAFewPixelsOff) {
   EXPECT_TRUE(is_alarm_where_less_is_beside(but_for_the_first(3)));
 }
 
-TEST(Anomalies, InVideoAreOnlyWhatOutshinesNearlyAllAroundIt) {
+TEST(Anomalies, InVideoAreOnlyWhatOutshinesWhatIsNormallyBrighter) {
   const auto none = [](int, int) { return 0.0F; };
   AnomalyConfig video;
-  video.min_rank = 0.95;
-  EXPECT_TRUE(is_alarm_where_less_is_beside(none, 90.0F, video));
-  EXPECT_FALSE(is_alarm_where_less_is_beside(none, 200.0F, video));
-  EXPECT_FALSE(is_alarm_where_less_is_beside(none, std::nullopt, video)) << "nothing to compare it with";
+  video.min_outshone = 0.7;
+  EXPECT_TRUE(is_alarm_where_less_is_beside(none, 130.0F, video));
+  EXPECT_FALSE(is_alarm_where_less_is_beside(none, 200.0F, video)) << "it is still darker";
+  EXPECT_FALSE(is_alarm_where_less_is_beside(none, 90.0F, video)) << "nothing was brighter: the order is as before";
   EXPECT_TRUE(is_alarm_where_less_is_beside(none, 200.0F)) << "other units know how much a change is";
 }
 

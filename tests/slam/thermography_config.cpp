@@ -24,8 +24,8 @@ TEST(ThermographyConfig, FillsInWhatSuitsTheUnit) {
   EXPECT_EQ(count.map.model.min_change, 90.0) << "3 K of a usual camera";
   EXPECT_EQ(kelvin.map.model.min_change, 3.0) << "30 K would be most faults";
   EXPECT_EQ(grey.anchor.shape, AnchorConfig::Shape::curve);
-  EXPECT_GT(grey.anomalies.min_rank, 0.9) << "of video only the order is certain";
-  EXPECT_EQ(count.anomalies.min_rank, 0.0);
+  EXPECT_GT(grey.anomalies.min_outshone, 0.5) << "of video only the order is certain";
+  EXPECT_EQ(count.anomalies.min_outshone, 0.0);
   EXPECT_EQ(count.anchor.shape, AnchorConfig::Shape::affine);
   EXPECT_EQ(kelvin.anchor.shape, AnchorConfig::Shape::bias);
   for (const ThermographyConfig& config : {grey, count, kelvin}) {

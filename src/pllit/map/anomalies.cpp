@@ -8,6 +8,7 @@
 
 #include "pllit/geometry/voxel_neighbours.hpp"
 #include "pllit/map/even_centroid.hpp"
+#include "pllit/map/outshining.hpp"
 
 namespace pllit {
 namespace {
@@ -26,7 +27,7 @@ struct Members {
   int all = 0, left = 0, hot = 0, known = 0, new_surfaces = 0, lasting = 0;
   bool seen_hot_now = false;
   double change = 0.0, sigmas = 0.0, peak_change = 0.0, peak_sigmas = 0.0;
-  double own_change = 0.0, own_sigmas = 0.0, own_level = 0.0;  ///< of those that are no mere parts
+  double own_change = 0.0, own_sigmas = 0.0;  ///< of those that are no mere parts
   Eigen::AlignedBox3d box_W;
 
   void add(const WatchedVoxel& watched, Time now, double dwell_s) {
@@ -44,7 +45,6 @@ struct Members {
     if (!watched.joined) {
       own_change += watched.change;
       own_sigmas += in_sigmas;
-      own_level += watched.normal + watched.change;
     }
     peak_change = std::max(peak_change, static_cast<double>(watched.peak));
     peak_sigmas = std::max(peak_sigmas, static_cast<double>(watched.peak / watched.sigma));
@@ -142,8 +142,12 @@ void AnomalyDetector::update(const WatchInput& input, const ThermalView& view) {
     for (const VoxelKey key : cluster) watch_.at(key).owner = id;
   }
   std::map<std::uint32_t, Parts> parts_of = parts_by_owner();
+  std::vector<CalmSurface> calm;
+  if (config_.min_outshone > 0.0 && !tracks_.empty()) calm = calm_surfaces(input, watch_);
   for (auto& [id, track] : tracks_) {
     measure(track, parts_of[id], view);
+    if (const auto share = outshone(parts_of[id], calm, input.map, view.time))
+      track.outshining = *share >= config_.min_outshone ? track.outshining + 1 : 0;
     settle(track, parts_of[id], view.time, input.map);
     if (track.anomaly.last_seen != view.time) continue;
     const auto crop = crop_of(watch_, id, view, input.map.config().voxel_m);
@@ -235,19 +239,9 @@ void AnomalyDetector::measure(Track& track, const Parts& parts, const ThermalVie
   anomaly.confidence = confidence(anomaly);
 }
 
-/// Whether hardly anything around is normally as bright.
-bool AnomalyDetector::stands_out(const Track& track, double level, const ThermalMap& map) const {
-  if (config_.min_rank <= 0.0) return true;
-  const auto rank = map.rank(level, track.anomaly.position_W, config_.rank_radius_m, [&](VoxelKey key) {
-    const auto found = watch_.find(key);
-    return found != watch_.end() && found->second.owner == track.anomaly.id;
-  });
-  return rank && *rank >= config_.min_rank;
-}
-
 void AnomalyDetector::settle(Track& track, const Parts& parts, Time now, const ThermalMap& map) const {
   constexpr int kStillFrames = 15;  // a rig that stands sees it in all of them, one that passes by in a few
-  constexpr int kFewestSeeds = 2;
+  constexpr int kFewestSeeds = 2, kOutshining = 3;
   Anomaly& anomaly = track.anomaly;
   if (anomaly.state != AnomalyState::fresh) {
     anomaly.state = state_of(parts);
@@ -266,7 +260,7 @@ void AnomalyDetector::settle(Track& track, const Parts& parts, Time now, const T
   const bool watched_long =
       to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;
   if (anomaly.views < views && !watched_long) return;
-  if (!stands_out(track, members.own_level / seeds, map)) return;
+  if (config_.min_outshone > 0.0 && track.outshining < kOutshining) return;
   anomaly.state = AnomalyState::confirmed;
   anomaly.confirmed = now;
 }

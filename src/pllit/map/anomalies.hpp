@@ -21,15 +21,13 @@ struct AnomalyConfig {
   /// however they lie to the edges of the image: at its edge a hot thing may be a seam that is seen a few pixels off,
   /// inside it is one.
   double sure_change = 0.67;
-  /// So much of the known surfaces around must be darker than it: of what a gain control does to greys, only their
-  /// order is certain, and where it stretches a kelvin over half of them the weather changes surfaces by tens. 0: not
+  /// It must outshine so much of what is normally brighter than it, in three images in a row (outshining.hpp); 0: not
   /// asked.
-  double min_rank = 0.0;
-  double rank_radius_m = 10.0;  ///< how far around: as far as surfaces are watched
-  double join_m = 0.1;          ///< hot voxels in neighbouring cells of this size are one anomaly
-  int enough_seeds = 8;         ///< so many voxels that are judged by themselves vouch for any number of others
-  double place_cell_m = 0.15;   ///< its position is the mean over cells of this size, whatever they hold
-  double max_leaving = 0.3;     ///< clusters of which a greater share has left their place are moving: people, vehicles
+  double min_outshone = 0.0;
+  double join_m = 0.1;         ///< hot voxels in neighbouring cells of this size are one anomaly
+  int enough_seeds = 8;        ///< so many voxels that are judged by themselves vouch for any number of others
+  double place_cell_m = 0.15;  ///< its position is the mean over cells of this size, whatever they hold
+  double max_leaving = 0.3;    ///< clusters of which a greater share has left their place are moving: people, vehicles
   double registration_m = 0.02;   ///< how well images and surfaces lie on each other, one sigma
   double forget_fresh_s = 120.0;  ///< what was never confirmed is dropped when not seen for so long
 };
@@ -54,6 +52,7 @@ class AnomalyDetector {
   struct Track {
     Anomaly anomaly;
     Vector3d last_viewpoint_W;
+    int outshining = 0;  ///< images in a row in which it outshone what it must
   };
 
   std::vector<Cluster> clusters(const ThermalMap& map) const;
@@ -62,7 +61,6 @@ class AnomalyDetector {
   std::map<std::uint32_t, Parts> parts_by_owner();
   void measure(Track& track, const Parts& parts, const ThermalView& view);
   void settle(Track& track, const Parts& parts, Time now, const ThermalMap& map) const;
-  bool stands_out(const Track& track, double level, const ThermalMap& map) const;
   void drop_vanished(Time now, const std::map<std::uint32_t, Parts>& parts_of);
 
   AnomalyConfig config_;

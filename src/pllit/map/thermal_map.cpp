@@ -63,20 +63,6 @@ void ThermalMap::forget(const Vector3d& p_W) {
   if (voxels_.find(key)) *voxels_.insert(key).first = {};
 }
 
-std::optional<double> ThermalMap::rank(double intensity, const Vector3d& p_W, double radius_m,
-                                       const std::function<bool(VoxelKey)>& left_out) const {
-  constexpr int kFewest = 200;
-  int known = 0, darker = 0;
-  voxels_.for_each([&](VoxelKey key, const ThermalVoxel& voxel) {
-    if ((centre_W(key) - p_W).squaredNorm() > radius_m * radius_m) return;
-    if (!voxel.learned(config_.model) || left_out(key)) return;
-    ++known;
-    darker += voxel.mean < static_cast<float>(intensity) ? 1 : 0;
-  });
-  if (known < kFewest) return std::nullopt;
-  return static_cast<double>(darker) / known;
-}
-
 PointTable ThermalMap::trim() {
   PointTable dropped;
   for (const std::string& name : fields()) dropped.fields.push_back({name, {}});

@@ -2,7 +2,6 @@
 // intensity voxel map).
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,11 +44,6 @@ class ThermalMap {
   VoxelKey key_at(const Vector3d& p_W) const { return voxel_key(voxel_of(p_W, 1.0 / config_.voxel_m)); }
   /// Mean of the points seen in a voxel.
   Vector3d position_W(VoxelKey key, const ThermalVoxel& voxel) const;
-
-  /// Share of the known surfaces around a place, but for some, that are normally darker than `intensity`; nothing where
-  /// there are too few to tell.
-  std::optional<double> rank(double intensity, const Vector3d& p_W, double radius_m,
-                             const std::function<bool(VoxelKey)>& left_out) const;
 
   /// Every voxel as a point with scalar fields: `intensity` (now), `normal`, `sigma` (in the map's unit), `raw`,
   /// `images`, `views`, `change_sigmas` (zero where nothing changed), `seen_s` (since the first image).

@@ -60,7 +60,7 @@ ThermographyConfig by_unit(ThermographyConfig config, IntensityUnit unit) {
   watch.bent_curves = config.anchor.shape == AnchorConfig::Shape::curve;
   if (model.learned_views == 0) model.learned_views = grey ? 2 : 1;  // one good reading says more than many of video
   if (!grey) model.passing_images = 2;
-  config.anomalies.min_rank = grey ? 0.95 : 0.0;
+  config.anomalies.min_outshone = grey ? 0.7 : 0.0;
   if (!watch.bent_curves) {
     watch.least_past_s = 1.0;
     watch.whole_things = true;
