@@ -142,12 +142,9 @@ void AnomalyDetector::update(const WatchInput& input, const ThermalView& view) {
     for (const VoxelKey key : cluster) watch_.at(key).owner = id;
   }
   std::map<std::uint32_t, Parts> parts_of = parts_by_owner();
-  std::vector<CalmSurface> calm;
-  if (config_.min_outshone > 0.0 && !tracks_.empty()) calm = calm_surfaces(input, watch_);
+  note_outshining(input, parts_of, view.time);
   for (auto& [id, track] : tracks_) {
     measure(track, parts_of[id], view);
-    if (const auto share = outshone(parts_of[id], calm, input.map, view.time))
-      track.outshining = *share >= config_.min_outshone ? track.outshining + 1 : 0;
     settle(track, parts_of[id], view.time, input.map);
     if (track.anomaly.last_seen != view.time) continue;
     const auto crop = crop_of(watch_, id, view, input.map.config().voxel_m);
@@ -162,6 +159,18 @@ std::map<std::uint32_t, AnomalyDetector::Parts> AnomalyDetector::parts_by_owner(
   for (auto& [key, watched] : watch_)
     if (watched.owner != 0) parts_of[watched.owner].push_back(&watched);
   return parts_of;
+}
+
+/// Of those that may yet become alarms.
+void AnomalyDetector::note_outshining(const WatchInput& input, std::map<std::uint32_t, Parts>& parts_of, Time now) {
+  if (config_.min_outshone <= 0.0) return;
+  std::optional<std::vector<CalmSurface>> calm;
+  for (auto& [id, track] : tracks_) {
+    if (track.anomaly.state != AnomalyState::fresh) continue;
+    if (!calm) calm = calm_surfaces(input, watch_);
+    if (const auto share = outshone(parts_of[id], *calm, input.map, now))
+      track.outshining = *share >= config_.min_outshone ? track.outshining + 1 : 0;
+  }
 }
 
 std::vector<Anomaly> AnomalyDetector::anomalies() const {

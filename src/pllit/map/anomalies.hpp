@@ -59,6 +59,7 @@ class AnomalyDetector {
   Track& owner_of(const Cluster& cluster, const ThermalView& view);
   Track& new_track(const Cluster& cluster, const ThermalView& view);
   std::map<std::uint32_t, Parts> parts_by_owner();
+  void note_outshining(const WatchInput& input, std::map<std::uint32_t, Parts>& parts_of, Time now);
   void measure(Track& track, const Parts& parts, const ThermalView& view);
   void settle(Track& track, const Parts& parts, Time now, const ThermalMap& map) const;
   void drop_vanished(Time now, const std::map<std::uint32_t, Parts>& parts_of);
