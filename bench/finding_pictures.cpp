@@ -42,6 +42,14 @@ struct Subject {
   Time begins;
 };
 
+/// For the eye: counts from their least to their greatest.
+cv::Mat grey_of(const cv::Mat& raw) {
+  if (raw.depth() == CV_8U) return raw.clone();
+  cv::Mat grey;
+  cv::normalize(raw, grey, 0.0, 255.0, cv::NORM_MINMAX, CV_8U);
+  return grey;
+}
+
 Expected<std::vector<Look>> looks_of(const fs::path& bag, const fs::path& session, const Config& config, const Rig& rig,
                                      const SE3& T_I_C) {
   const auto path = read_interrupted_tum(session / "trajectory.tum");
@@ -55,7 +63,7 @@ Expected<std::vector<Look>> looks_of(const fs::path& bag, const fs::path& sessio
     if (!*event) return looks;
     const auto* frame = std::get_if<CameraFrame>(&(*event)->data);
     const auto T_W_I = frame ? pose_at(*path, frame->time + rig.camera_delay, from_seconds(0.3)) : std::nullopt;
-    if (T_W_I && frame->counts.type() == CV_8UC1) looks.push_back({frame->time, *T_W_I * T_I_C, frame->counts.clone()});
+    if (T_W_I && frame->counts.channels() == 1) looks.push_back({frame->time, *T_W_I * T_I_C, grey_of(frame->counts)});
   }
 }
 

@@ -38,7 +38,7 @@ class FrontEnd {
     FrontEndImage out;
     out.image = config_.calibrate ? calibrated_image(raw, chain_.curve) : raw;
     out.features = *extractor_.extract(out.image);
-    out.tracks = match_to_keyframes(out.features, T_W_C, window_, config_.camera, config_.matching, arena_);
+    out.tracks = match_to_keyframes(out.features, {}, T_W_C, window_, config_.camera, config_.matching, arena_);
     out.keyframes = window_.size();
     if (config_.disturb) config_.disturb(out.tracks, out.features);
     const cv::Mat around = greys_around(raw, out.features.points_px);

@@ -143,22 +143,28 @@ void run_matcher(const Matcher& matcher, const std::vector<View>& views, const s
   };
   std::mt19937 engine(7);
   Arena arena(1);
-  Keyframe keyframe{
-      .id = 0, .time = views[0].time, .T_W_C = views[0].T_W_C, .features = strongest(extracted(video[0]), kPoints)};
+  Keyframe keyframe{.id = 0,
+                    .time = views[0].time,
+                    .T_W_C = views[0].T_W_C,
+                    .features = strongest(extracted(video[0]), kPoints),
+                    .image = image_for_alignment(video[0])};
   const auto surfaces_W = surfaces_of(keyframe.features.points_px, views[0], world);
   give_depths(keyframe, surfaces_W, engine);
   for (const int gap : kGaps) {
     const auto k = static_cast<std::size_t>(gap);
     const SE3 T_W_C = predicted(views[k].T_W_C, engine);
+    const cv::Mat image = image_for_alignment(video[k]);
     Found found(surfaces_W.size());
     {
       const Features now = extracted(video[k]);
       const auto begin = std::clock();
-      const Tracks tracks = match_to_keyframes(now, T_W_C, {&keyframe, 1}, world.camera(), matcher.config, arena);
+      const Tracks tracks =
+          match_to_keyframes(now, image, T_W_C, {&keyframe, 1}, world.camera(), matcher.config, arena);
       timing.seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
       ++timing.calls;
       for (const PointMatch& match : tracks.points)
         found[static_cast<std::size_t>(match.reference)] = now.points_px[static_cast<std::size_t>(match.current)];
+      for (const PointTrack& track : tracks.tracked) found[static_cast<std::size_t>(track.reference)] = track.at_px;
     }
     scores[{matcher.name, gap}] += judged(surfaces_W, found, views[k], world);
   }
@@ -301,24 +307,19 @@ int main(int argc, char** argv) {
   matchers.push_back({"our points, ORB", orb, loose});
   matchers.push_back({"our points, SIFT upright", sift, loose});
   if (tune) {
-    const auto variant = [&](const char* name, int points, double radius, double gate, double ratio, double distance,
-                             int window = 5, double blur = 1.0, double least = 0.012) {
+    const auto variant = [&](const char* name, const AlignConfig& align) {
       Matcher matcher{name, {}, {}};
-      matcher.extraction.most_points = points;
-      matcher.extraction.most_radius_px = radius;
-      matcher.extraction.corners.window_px = window;
-      matcher.extraction.corners.blur_px = blur;
-      matcher.extraction.corners.least_strength = least;
-      matcher.config.gate_px = gate;
-      matcher.config.ratio = ratio;
-      matcher.config.most_distance = distance;
+      matcher.config.align = align;
       matchers.push_back(matcher);
     };
-    variant("strength .012", 1000, 10, 3, 0.9, 1.0, 5, 1.0, 0.012);
-    variant("strength .06", 1000, 10, 3, 0.9, 1.0, 5, 1.0, 0.06);
-    variant("gate 4", 1000, 10, 4, 0.9, 1.0, 5, 1.0, 0.03);
-    variant("distance 0.85", 1000, 10, 3, 0.9, 0.85, 5, 1.0, 0.03);
-    variant("blur 1.5", 1000, 10, 3, 0.9, 1.0, 5, 1.5, 0.03);
+    variant("not aligned", {.enabled = false});
+    variant("half 4", {.half_px = 4});
+    variant("half 7", {.half_px = 7});
+    variant("gate 5", {.gate_px = 5.0});
+    variant("correlation 0.7", {.least_correlation = 0.7});
+    variant("correlation 0.9", {.least_correlation = 0.9});
+    variant("sigma 1", {.most_sigma_px = 1.0});
+    variant("sigma 0.3", {.most_sigma_px = 0.3});
   }
   // Tuned over contrast limit, window, levels and the backward check's limit on seed 901: a small window is best under
   // steady gain control, a large one where it jumps.

@@ -47,11 +47,13 @@ Json summary_json(const RunSummary& summary) {
 
 Json camera_json(const RefinedMount& mount, const Rig& rig) {
   constexpr double deg = 180.0 / std::numbers::pi;
-  const Vector7 moved = boxminus(mount.mean, {.T_I_C = rig.T_I_C}), sigmas = mount.covariance.diagonal().cwiseSqrt();
-  const auto sizes = [](const Vector7& error) -> Json {
+  const MountVector moved = boxminus(mount.mean, {.T_I_C = rig.T_I_C}),
+                    sigmas = mount.covariance.diagonal().cwiseSqrt();
+  const auto sizes = [](const MountVector& error) -> Json {
     return {{"turn_deg", deg * error.head<3>().norm()},
             {"shift_m", error.segment<3>(mount_index::p).norm()},
-            {"delay_s", error[mount_index::delay]}};
+            {"delay_s", error[mount_index::delay]},
+            {"depth_stretch", error[mount_index::depth]}};
   };
   return {{"T_I_C", pose_json(mount.mean.T_I_C)},
           {"delay_s", to_seconds(rig.camera_delay) + mount.mean.delay_s},
@@ -76,8 +78,10 @@ std::string summary_text(const Json& json) {
                         json["status"] == "done" ? "therefore exit code 3" : json["status"].get<std::string>());
   if (json.contains("camera")) {
     const auto moved = [&](const char* key) { return json["camera"]["moved"][key].get<double>(); };
-    text += std::format("camera      turned by {:.2f} deg, moved by {:.0f} mm, {:+.1f} ms later than configured\n",
-                        moved("turn_deg"), 1e3 * moved("shift_m"), 1e3 * moved("delay_s"));
+    text += std::format(
+        "camera      turned by {:.2f} deg, moved by {:.0f} mm, {:+.1f} ms later than configured\n"
+        "            LiDAR ranges {:+.2f} % shorter than it sees\n",
+        moved("turn_deg"), 1e3 * moved("shift_m"), 1e3 * moved("delay_s"), 100.0 * moved("depth_stretch"));
   }
   if (json.contains("loops"))
     text += std::format("loops       {} closed, {} candidates refused\n", json["loops"]["accepted"].get<int>(),

@@ -58,6 +58,32 @@ TEST(Anomalies, AreNotWhatMayAllBeAnEdgeThatIsSeenAFewPixelsOff) {
   EXPECT_TRUE(is_alarm_where_less_is_beside(but_for_the_first(3)));
 }
 
+/// Whether an alarm is raised for an upright strip, a voxel wide, that shows 100, and `grey_of(image)` from the sixth
+/// second on.
+template <class Grey>
+bool is_alarm_for_strip(const Grey& grey_of) {
+  ThermalMap map({});
+  const SightLog past({});
+  AnomalyDetector detector({});
+  for (int image = 0; image < 120; ++image) {
+    const Time time{std::chrono::milliseconds(100 * image)};
+    ThermalView view{.time = time, .viewpoint_W = Vector3d(0.0, 0.1 * image, 0.0)};
+    const float grey = image < 60 ? 100.0F : grey_of(image);
+    for (int z = 0; z < 5; ++z)
+      view.observations.push_back(
+          {.p_W = Vector3d(3.0, 0.125, 0.125 + 0.05 * z), .pixel_px = {0.0F, 0.0F}, .intensity = grey, .raw = grey});
+    const auto seen = map.integrate(view);
+    const Sight sight = sight_of(time, view.viewpoint_W, {}, past.config());
+    detector.update({.map = map, .seen = seen, .sight = sight, .past = past}, view);
+  }
+  return is_alarm(detector);
+}
+
+TEST(Anomalies, AreNotTheRimOfAThingBehindWhichSomethingHotPasses) {
+  EXPECT_TRUE(is_alarm_for_strip([](int) { return 160.0F; })) << "a strip may be hot";
+  EXPECT_FALSE(is_alarm_for_strip([](int image) { return image < 64 ? 600.0F : 140.0F; }));
+}
+
 TEST(Anomalies, InVideoAreOnlyWhatOutshinesWhatIsNormallyBrighter) {
   const auto none = [](int, int) { return 0.0F; };
   AnomalyConfig video;

@@ -78,6 +78,15 @@ TEST(SightLog, DoesNotTakeTheRimOfAThingForFree) {
   for (const double y_m : {0.17, 0.19, 0.195}) EXPECT_FALSE(log.evidence({2.0, y_m, 0.0}, after(60)).was_free()) << y_m;
 }
 
+TEST(SightLog, DoesNotTakeForFreeWhatRaysPassOnOneSideOnly) {
+  std::vector<Vector3f> above = points(false);
+  std::erase_if(above, [](const Vector3f& p_W) { return p_W.z() < 0.01F * p_W.x(); });
+  SightLog log({.spacing_m = 0.01});
+  for (int i = 0; i < 12; ++i) log.add(sight_of(after(i), Vector3d(0.0, 0.01 * i, 0.0), above, {}));
+  EXPECT_EQ(log.evidence({2.0, 0.0, 0.01}, after(60)).free, 0);
+  EXPECT_EQ(log.evidence({2.0, 0.0, 0.15}, after(60)).free, 12);
+}
+
 TEST(SightLog, KeepsSightsWhereTheRigMovesOrStandsAndForgetsTheOldest) {
   SightLog log({.spacing_m = 0.25, .spacing_s = 10.0, .most = 5});
   for (int i = 0; i < 8; ++i) log.add({.time = after(i), .p_W = {0.1 * i, 0.0, 0.0}});

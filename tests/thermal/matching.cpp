@@ -79,7 +79,7 @@ const SE3 ahead = moved({0.2, 0.1, 0.8}, {0.02, -0.05, 0.03});
 
 Tracks matched(const Views& views, const SE3& predicted, const MatchConfig& config = {}) {
   Arena arena(2);
-  return match_to_keyframes(views.now, predicted, {&views.keyframe, 1}, camera(), config, arena);
+  return match_to_keyframes(views.now, {}, predicted, {&views.keyframe, 1}, camera(), config, arena);
 }
 
 struct Score {
@@ -201,10 +201,10 @@ TEST(Matching, FindsThePoseThatMostMatchesAgreeOn) {
 TEST(Matching, OfNothingIsNothing) {
   Arena arena(2);
   const Views seen = views({}, ahead, 8);
-  EXPECT_TRUE(match_to_keyframes({}, ahead, {&seen.keyframe, 1}, camera(), {}, arena).points.empty());
-  EXPECT_TRUE(match_to_keyframes(seen.now, ahead, {}, camera(), {}, arena).points.empty());
+  EXPECT_TRUE(match_to_keyframes({}, {}, ahead, {&seen.keyframe, 1}, camera(), {}, arena).points.empty());
+  EXPECT_TRUE(match_to_keyframes(seen.now, {}, ahead, {}, camera(), {}, arena).points.empty());
   const Keyframe empty;
-  EXPECT_TRUE(match_to_keyframes(seen.now, ahead, {&empty, 1}, camera(), {}, arena).points.empty());
+  EXPECT_TRUE(match_to_keyframes(seen.now, {}, ahead, {&empty, 1}, camera(), {}, arena).points.empty());
   // Looking the other way nothing is in view.
   EXPECT_TRUE(matched(seen, moved(Vector3d::Zero(), {0.0, 3.1, 0.0})).points.empty());
 }

@@ -69,14 +69,17 @@ TEST(PointResidual, DerivativesToBothPosesMatchCentralDifferences) {
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const PointObservation point = random_point(random, scene);
-      const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera);
+      const auto at =
+          point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
       if (!at) continue;
       const Matrix2x6 now = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return point_residual(moved(scene.T_W_I, d), scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera)
+        return point_residual(moved(scene.T_W_I, d), scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C},
+                              *scene.rig.camera)
             ->r_px;
       });
       const Matrix2x6 keyframe = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return point_residual(scene.T_W_I, moved(scene.T_W_I_keyframe, d), point, scene.rig.T_I_C, *scene.rig.camera)
+        return point_residual(scene.T_W_I, moved(scene.T_W_I_keyframe, d), point, {.T_I_C = scene.rig.T_I_C},
+                              *scene.rig.camera)
             ->r_px;
       });
       EXPECT_LT((at->J_now - now).norm(), 1e-5 * now.norm());
@@ -90,14 +93,36 @@ TEST(PointResidual, DerivativeToTheCamerasPoseOnTheRigMatchesCentralDifferences)
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const PointObservation point = random_point(random, scene);
-      const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera);
+      const auto at =
+          point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
       if (!at) continue;
       const Matrix2x6 expected = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
         Rig rig = scene.rig;
         rig.T_I_C = moved(rig.T_I_C, d);
-        return point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, rig.T_I_C, *rig.camera)->r_px;
+        return point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = rig.T_I_C}, *rig.camera)->r_px;
       });
       EXPECT_LT((at->J_camera - expected).norm(), 1e-5 * expected.norm() + 1e-6);
+    }
+}
+
+TEST(PointResidual, DerivativeToTheDepthStretchMatchesCentralDifferences) {
+  Random random(23);
+  for (const Camera& camera : {test::thermal_camera(), test::fisheye_camera()})
+    for (int i = 0; i < 50; ++i) {
+      const Scene scene = random_scene(random, camera);
+      const PointObservation point = random_point(random, scene);
+      const CameraMount mount{.T_I_C = scene.rig.T_I_C, .depth_stretch = 0.02};
+      const auto residual = [&](const CameraMount& by) {
+        return point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, by, *scene.rig.camera);
+      };
+      const auto slope = [&](int index) -> Eigen::Vector2d {
+        const MountVector little = 1e-6 * MountVector::Unit(index);
+        return (residual(boxplus(mount, little))->r_px - residual(boxplus(mount, -little))->r_px) / 2e-6;
+      };
+      const auto at = residual(mount);
+      if (!at) continue;
+      const Eigen::Vector2d by_depth = slope(mount_index::depth);
+      EXPECT_LT((at->J_depth - by_depth).norm(), 1e-5 * by_depth.norm() + 1e-4);
     }
 }
 
@@ -126,12 +151,14 @@ TEST(PointResidual, NoiseIsWhatTheDepthsErrorDoesInTheImage) {
   for (int i = 0; i < 50; ++i) {
     const Scene scene = random_scene(random, test::thermal_camera());
     PointObservation point = random_point(random, scene);
-    const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera);
+    const auto at =
+        point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
     if (!at) continue;
     const auto at_depth = [&](double metres) {
       PointObservation other = point;
       other.p_K_m += metres * point.p_K_m.normalized();
-      return point_residual(scene.T_W_I, scene.T_W_I_keyframe, other, scene.rig.T_I_C, *scene.rig.camera)->r_px;
+      return point_residual(scene.T_W_I, scene.T_W_I_keyframe, other, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera)
+          ->r_px;
     };
     const Vector2d shift = (at_depth(1e-5) - at_depth(-1e-5)) / 2e-5 * point.sigma_ray_m;
     EXPECT_LT((at->model_px2 - shift * shift.transpose()).norm(), 1e-5 * shift.squaredNorm() + 1e-12);
@@ -145,7 +172,8 @@ TEST(PointResidual, OfAPointThatIsSeenWhereItIsIsZero) {
   const PointObservation point{.p_K_m = Vector3d(0.4, -0.3, 5.0),
                                .sigma_ray_m = 0.05,
                                .observed_px = *scene.rig.camera->project({0.4, -0.3, 5.0})};
-  const auto at = point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera);
+  const auto at =
+      point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
   EXPECT_LT(at->r_px.norm(), 1e-9);
   EXPECT_LT(at->model_px2.norm(), 1e-9);                                    // without parallax depth does not matter
   EXPECT_LT((at->J_now + at->J_keyframe).norm(), 1e-9 * at->J_now.norm());  // nor does a motion of both
@@ -155,7 +183,8 @@ TEST(PointResidual, IsNothingBehindTheCamera) {
   Random random(14);
   const Scene scene = random_scene(random, test::thermal_camera());
   const PointObservation point{.p_K_m = Vector3d(0.0, 0.0, -5.0), .observed_px = Vector2d(320.0, 240.0)};
-  EXPECT_FALSE(point_residual(scene.T_W_I_keyframe, scene.T_W_I_keyframe, point, scene.rig.T_I_C, *scene.rig.camera));
+  EXPECT_FALSE(
+      point_residual(scene.T_W_I_keyframe, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera));
 }
 
 TEST(LineResidual, DerivativesToBothPosesMatchCentralDifferences) {

@@ -265,7 +265,9 @@ void AnomalyDetector::settle(Track& track, const Parts& parts, Time now, const T
   if (seeds < std::clamp(members.hot / config_.watch.parts_of_one, kFewestSeeds, config_.enough_seeds)) return;
   const int sure = sure_seeds(parts, config_.sure_change * model.min_change);
   if (sure < kFewestSeeds || 3 * sure < seeds) return;
-  const int views = is_thin(anomaly, map.config().voxel_m) ? 2 * config_.min_views : config_.min_views;
+  const bool thin = is_thin(anomaly, map.config().voxel_m);
+  if (thin && anomaly.mean_change < config_.thin_evenness * anomaly.peak_change) return;
+  const int views = thin ? 2 * config_.min_views : config_.min_views;
   const bool watched_long =
       to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;
   if (anomaly.views < views && !watched_long) return;

@@ -82,7 +82,23 @@ class Aim {
     return seen_there != PointSight::surface && seen_there != PointSight::hidden && around() == PointSight::free;
   }
 
+  /// Whether the cells around that were measured lie on all sides: rays that pass a point on one side only may have
+  /// missed what is there.
+  bool is_surrounded() const {
+    bool below = false, above = false, left = false, right = false;
+    for (int i = -1; i <= 1; ++i) {
+      below |= measured(row_ - 1, column_ + i);
+      above |= measured(row_ + 1, column_ + i);
+      left |= measured(row_ + i, column_ - 1);
+      right |= measured(row_ + i, column_ + 1);
+    }
+    return below && above && left && right;
+  }
+
  private:
+  bool measured(int row, int column) const {
+    return row >= 0 && row < cells_.rows && sight_.range_mm[cells_.at(column, row)] != 0;
+  }
   PointSight seen(int range_mm) const {
     return range_mm > far_mm_ ? PointSight::free : range_mm < near_mm_ ? PointSight::hidden : PointSight::surface;
   }
@@ -171,7 +187,7 @@ SightEvidence SightLog::evidence(const Vector3d& p_W, Time before) const {
     const Aim aim(sight, p_W, config_);
     const bool surface = aim.own() == PointSight::surface;
     // A sight's rays come from where the rig was during a few scans: what they pass at a rim is more than a cell.
-    if (!surface && !aim.is_free()) continue;
+    if (!surface && !(aim.is_free() && aim.is_surrounded())) continue;
     looks.push_back({surface, (p_W - sight.p_W).norm()});
     ++(surface ? evidence.surface : evidence.free);
   }

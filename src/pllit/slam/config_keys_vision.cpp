@@ -25,6 +25,8 @@ void list_vision(Section section, VisionConfig& config) {
               {1e-5, 1.0});
   section.add(PLLIT_KEY(delay_sigma_s),
               "How well the camera's delay is known, one sigma; it is refined. 0: it is right.", "s", {0.0, 1.0});
+  section.add(PLLIT_KEY(depth_stretch_sigma),
+              "How well LiDAR ranges are known, one sigma, as a share; refined. 0: they are right.", "", {0.0, 0.1});
   section.add(PLLIT_KEY(depth_window_s), "LiDAR points that give features their depth are at most so old.", "s",
               {0.05, 30.0});
   section.add(PLLIT_KEY(most_misfit),

@@ -85,7 +85,6 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
 
   PointCloud dense;
   SE3 T_W_scan = motion.predicted.mean.T_W_I();  // where the whole scan lies best
-  std::optional<StateDirections> open;           // what the scan leaves to others; everything without one
   if (packet.scan) {
     facts.has_scan = true;
     frame.cloud = deskew(*packet.scan, motion.path, rig_.T_I_L, rig_.lidar);
@@ -100,7 +99,6 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     const UpdateResult lidar = match(motion.sweep.estimate, sparse, facts);
     advance_to(at_end(motion, lidar));
     T_W_scan = lidar.posterior.mean.T_W_I();
-    if (facts.matched) open = lidar.last.unobserved;
     clock.charge(Stage::lidar);
   } else {
     advance_to({motion.predicted, motion.J_end_begin});
@@ -109,7 +107,7 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
   if (look) {
     vision_->add_points(frame.cloud.points_I, estimate_.mean.T_W_I(), packet.end);
     const Vector3d rate_I = motion.path.nodes.back().omega_I;
-    const auto refined = vision_->refine(*packet.image, {estimate_, rate_I, open}, facts.image, clock, arena_);
+    const auto refined = vision_->refine(*packet.image, {estimate_, rate_I}, facts.image, clock, arena_);
     if (!refined) return std::unexpected(refined.error());
     T_W_scan = refined->mean.T_W_I() * estimate_.mean.T_W_I().inverse() * T_W_scan;
     estimate_ = *refined;

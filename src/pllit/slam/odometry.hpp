@@ -18,7 +18,7 @@ namespace pllit {
 /// A camera's mount with the covariance of its errors.
 struct RefinedMount {
   CameraMount mean;
-  Matrix7 covariance = Matrix7::Zero();
+  MountMatrix covariance = MountMatrix::Zero();
 };
 
 /// The estimate at the end of one packet, and what led to it.

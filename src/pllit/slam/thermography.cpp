@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -43,6 +44,13 @@ bool same_pixels(const cv::Mat& a, const cv::Mat& b) {
   return true;
 }
 
+/// How far from where it should an image may show a point, as the refinement of the camera's pose leaves it open.
+double aim_sigma_px(const RefinedMount& mount, const Camera& camera) {
+  const Vector3d turn_rad = mount.covariance.diagonal().segment<3>(mount_index::theta).cwiseSqrt();
+  return std::max(std::max(camera.fx, camera.fy) * turn_rad.head<2>().maxCoeff(),
+                  0.5 * std::max(camera.width, camera.height) * turn_rad.z());
+}
+
 }  // namespace
 
 std::optional<ThermographyInput> thermography_input(const FrameEstimate& frame, const Rig& rig,
@@ -56,7 +64,8 @@ std::optional<ThermographyInput> thermography_input(const FrameEstimate& frame, 
                            .raw = counts,
                            .points_W = frame.points_W(),
                            .planes = &planes,
-                           .trusted = frame.health.state == HealthState::good};
+                           .trusted = frame.health.state == HealthState::good,
+                           .aim_sigma_px = frame.mount ? aim_sigma_px(*frame.mount, *rig.camera) : 0.0};
 }
 
 Thermography::Thermography(const Camera& camera, const ThermographyConfig& config)
@@ -89,8 +98,8 @@ ThermographyFrame Thermography::process(const ThermographyInput& input) {
   const SurfacePoints points = surface_in_view(input);
   const std::optional<Smear> smear = smear_of(input);
   ThermalView view{.time = input.time, .viewpoint_W = input.T_W_C.translation()};
-  view.observations =
-      sample_image(points, input.T_W_C, camera_, {image_through(input.raw, unit), input.raw}, config_.sampling, smear);
+  view.observations = sample_image(points, input.T_W_C, camera_, {image_through(input.raw, unit), input.raw},
+                                   sampling_of(input), smear);
   if (radiometric_)
     for (SurfaceObservation& seen : view.observations)
       seen.intensity = static_cast<float>(radiometric_->object_K(seen.intensity, seen.range_m));
@@ -125,6 +134,15 @@ bool Thermography::shutter_closed(const ThermographyInput& input) {
   input.raw.copyTo(last_raw_);
   if (frozen) shutter_ = input.time;
   return shutter_ && to_seconds(input.time - *shutter_) < config_.shutter_pause_s;
+}
+
+/// While the camera's pose on the rig is being found out, a point may be read off where it is by more than usual.
+SamplingConfig Thermography::sampling_of(const ThermographyInput& input) const {
+  constexpr double kSigmas = 3.0, kMost = 3.0;
+  SamplingConfig sampling = config_.sampling;
+  const double aim_px = std::min(kSigmas * input.aim_sigma_px, kMost * sampling.aim_px);
+  sampling.aim_px = std::max(sampling.aim_px, static_cast<int>(std::ceil(aim_px)));
+  return sampling;
 }
 
 /// Surfaces stay in memory for a while, but not where the last scans see through them.

@@ -21,6 +21,7 @@ struct ThermographyInput {
   std::vector<Vector3f> points_W{};  ///< the scan that ends with it, or empty
   const PlaneMap* planes = nullptr;  ///< for the surfaces' normals; none: not known
   bool trusted = true;               ///< localisation is good
+  double aim_sigma_px = 0.0;         ///< how well it is known where the image shows a point, one sigma
 };
 
 /// The input that a frame of the odometry gives; nothing where its image cannot be used: of another size than the rig's
@@ -64,6 +65,7 @@ class Thermography {
 
  private:
   bool shutter_closed(const ThermographyInput& input);
+  SamplingConfig sampling_of(const ThermographyInput& input) const;
   void remember_scan(const ThermographyInput& input);
   SurfacePoints surface_in_view(const ThermographyInput& input);
   std::optional<Smear> smear_of(const ThermographyInput& input);

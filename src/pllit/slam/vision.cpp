@@ -22,10 +22,10 @@ double cosine_of_corner(const Camera& camera) {
   return std::cos(std::min(angle + margin_rad, M_PI));
 }
 
-Matrix7 prior_of_mount(const VisionConfig& config) {
-  Vector7 sigmas;
+MountMatrix prior_of_mount(const VisionConfig& config) {
+  MountVector sigmas;
   sigmas << Vector3d::Constant(config.T_I_C_turn_deg * M_PI / 180.0), Vector3d::Constant(config.T_I_C_shift_m),
-      config.delay_sigma_s;
+      config.delay_sigma_s, config.depth_stretch_sigma;
   return sigmas.cwiseAbs2().asDiagonal();
 }
 
@@ -69,6 +69,7 @@ Expected<Vision::Look> Vision::look(const CameraFrame& image) const {
   auto features = extractor_->extract(grey);
   if (!features) return std::unexpected(features.error());
   look.features = std::move(*features);
+  look.image = image_for_alignment(grey);
   look.around = greys_around(look.counts, look.features.points_px);
   return look;
 }
@@ -116,7 +117,8 @@ Expected<Estimate> Vision::refine(const CameraFrame& image, const Moment& moment
   let_clocks_drift(image.time);
   const SE3 T_W_C = exposure(moment.prior.mean, mount().delay_s, moment.rate_I).T_W_I * mount().T_I_C;
   for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].T_W_C = clones_.poses[i] * mount().T_I_C;
-  Tracks tracks = match_to_keyframes(look->features, T_W_C, keyframes_, *rig_.camera, config_.matching, arena);
+  Tracks tracks =
+      match_to_keyframes(look->features, look->image, T_W_C, keyframes_, *rig_.camera, config_.matching, arena);
   facts.matches = static_cast<int>(tracks.points.size());
   facts.anchored = static_cast<int>(std::ranges::count_if(tracks.points, [](const auto& m) { return m.line_px >= 0; }));
   clock.charge(Stage::track);
@@ -171,18 +173,18 @@ void Vision::extend_maps(const Lesson& lesson, Arena& arena) {
 
 ImageObservations Vision::observe(const Features& features, const Tracks& tracks, const Moment& moment) const {
   ImageObservations observations{.rate_I = moment.rate_I, .points = {}, .lines = {}};
-  for (const PointMatch& match : tracks.points) {
-    const Keyframe& keyframe = keyframes_[match.keyframe];
-    const auto reference = static_cast<std::size_t>(match.reference);
-    const auto& depth = keyframe.depths[reference];
-    if (!depth) continue;
+  for (const PointTrack& track : tracks.tracked) {
+    const Keyframe& keyframe = keyframes_[track.keyframe];
+    const auto reference = static_cast<std::size_t>(track.reference);
+    const FeatureDepth& depth = *keyframe.depths[reference];
     const Vector3d ray_K = rig_.camera->ray(keyframe.features.points_px[reference].cast<double>());
     observations.points.push_back(
-        {.keyframe = match.keyframe,
-         .p_K_m = depth->range_m * ray_K,
-         .sigma_ray_m = depth->sigma_m,
-         .observed_px = features.points_px[static_cast<std::size_t>(match.current)].cast<double>(),
-         .line_px = match.line_px});
+        {.keyframe = track.keyframe,
+         .p_K_m = depth.range_m * ray_K,
+         .sigma_ray_m = depth.sigma_m,
+         .observed_px = track.at_px.cast<double>(),
+         .sigma_px = track.aligned ? config_.residuals.aligned_sigma_px : config_.residuals.point_sigma_px,
+         .line_px = track.line_px});
   }
   if (config_.residuals.lines)
     observations.lines = nearest_of_each(lines_.observed(features, tracks, keyframes_),
@@ -204,7 +206,7 @@ Estimate Vision::update(const Moment& moment, const ImageObservations& observati
   const auto linearize = [&](const NavState& state, const CameraMount& mount) {
     return linearize_image(state, mount, clones_.poses, observations, *rig_.camera, config_.residuals, covariance);
   };
-  JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{}, moment.open);
+  JointUpdate result = iterated_update(prior, clones_, linearize, FilterConfig{});
   facts.lines = static_cast<int>(observations.lines.size());
   facts.candidates = result.last.candidates;
   facts.inliers = result.last.inliers;
@@ -230,6 +232,7 @@ void Vision::keep(const Lesson& lesson, const DepthImage& depths, Arena& arena) 
   const auto& [look, tracks, posterior, exposed] = lesson;
   Keyframe keyframe{.id = next_id_++, .time = posterior.mean.time, .T_W_C = exposed.T_W_I * mount().T_I_C};
   keyframe.features = strongest(look.features, config_.keyframes.most_points);
+  keyframe.image = look.image;
   const std::vector<Eigen::Vector2f>& pixels_px = keyframe.features.points_px;
   keyframe.depths.resize(pixels_px.size());
   arena.for_chunks(pixels_px.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -25,8 +25,7 @@ class Vision {
   /// What the odometry knows at an image's time.
   struct Moment {
     Estimate prior;
-    Vector3d rate_I = Vector3d::Zero();   ///< how the rig turns, rad/s
-    std::optional<StateDirections> open;  ///< directions that the scan has left open; nothing without a scan
+    Vector3d rate_I = Vector3d::Zero();  ///< how the rig turns, rad/s
   };
   /// The rig must have a camera.
   Vision(const Rig& rig, const VisionConfig& config, std::unique_ptr<FeatureExtractor> extractor);
@@ -37,9 +36,7 @@ class Vision {
   void carry(const Matrix18& J_now_before);
   /// LiDAR points in I at `time`: where features will find their depth.
   void add_points(const std::vector<Vector3f>& points_I, const SE3& T_W_I, Time time);
-  /// The state after this image; the prior where it is of no use. Where the scan knows the pose to millimetres, what a
-  /// camera adds is mostly the error of its calibration, so it moves the state along what the scan has left open only;
-  /// its own mount it refines always. Errors are the extractor's.
+  /// The state after this image; the prior where it is of no use. Errors are the extractor's.
   Expected<Estimate> refine(const CameraFrame& image, const Moment& moment, ImageFacts& facts, StageClock& clock,
                             Arena& arena);
   /// Begins, in a thread of its own, to extend keyframes and lines by the image just refined; what comes next waits for
@@ -50,7 +47,7 @@ class Vision {
 
   /// As refined so far.
   const CameraMount& mount() const { return clones_.mount; }
-  Matrix7 mount_covariance() const { return clones_.mount_covariance(); }
+  MountMatrix mount_covariance() const { return clones_.mount_covariance(); }
 
  private:
   /// What is found in an image without knowing where it was taken.
@@ -60,6 +57,7 @@ class Vision {
     PhotometricChain chain{};    ///< that it was corrected with
     std::optional<CountRange> range{};
     Features features{};
+    cv::Mat image{};  ///< image_for_alignment() of what they were found in
   };
   Expected<Look> look(const CameraFrame& image) const;
   ImageObservations observe(const Features& features, const Tracks& tracks, const Moment& moment) const;

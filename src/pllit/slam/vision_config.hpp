@@ -27,12 +27,13 @@ struct VisionConfig {
   int threads = 2;                                         ///< for it
   Duration image_spacing = std::chrono::milliseconds(70);  ///< images that follow sooner are left out
   Duration line_spacing = std::chrono::milliseconds(250);  ///< between sightings of lines, which need depths
-  double T_I_C_turn_deg = 0.3;   ///< how well the camera's attitude on the rig is known, one sigma; it is refined
-  double T_I_C_shift_m = 0.01;   ///< and its place
-  double delay_sigma_s = 0.004;  ///< and how well the camera's delay is; 0 takes it as known
-  double depth_window_s = 1.0;   ///< LiDAR points that give depth are at most so old
-  double most_misfit = 4.0;      ///< of the residuals over what is expected of them: above, an image is not believed
-  int least_inliers = 12;        ///< fewer residuals that fit tell too little
+  double T_I_C_turn_deg = 0.3;         ///< how well the camera's attitude on the rig is known, one sigma; it is refined
+  double T_I_C_shift_m = 0.01;         ///< and its place
+  double delay_sigma_s = 0.004;        ///< and how well the camera's delay is; 0 takes it as known
+  double depth_stretch_sigma = 0.004;  ///< and how well LiDAR ranges are, as a share
+  double depth_window_s = 1.0;         ///< LiDAR points that give depth are at most so old
+  double most_misfit = 4.0;  ///< of the residuals over what is expected of them: above, an image is not believed
+  int least_inliers = 12;    ///< fewer residuals that fit tell too little
   ClassicalConfig classical;
   ImageCheckConfig check;
   GreyInputConfig grey;

@@ -4,16 +4,17 @@ namespace pllit {
 
 namespace ix = error_index;
 
-CameraMount boxplus(const CameraMount& mount, const Vector7& error) {
+CameraMount boxplus(const CameraMount& mount, const MountVector& error) {
   const SO3 R_I_C = mount.T_I_C.asSO3() * exp_so3(error.segment<3>(mount_index::theta));
   return {.T_I_C = pose_from(R_I_C, mount.T_I_C.translation() + error.segment<3>(mount_index::p)),
-          .delay_s = mount.delay_s + error[mount_index::delay]};
+          .delay_s = mount.delay_s + error[mount_index::delay],
+          .depth_stretch = mount.depth_stretch + error[mount_index::depth]};
 }
 
-Vector7 boxminus(const CameraMount& a, const CameraMount& b) {
-  Vector7 error;
+MountVector boxminus(const CameraMount& a, const CameraMount& b) {
+  MountVector error;
   error << log_so3(b.T_I_C.asSO3().inverse() * a.T_I_C.asSO3()), a.T_I_C.translation() - b.T_I_C.translation(),
-      a.delay_s - b.delay_s;
+      a.delay_s - b.delay_s, a.depth_stretch - b.depth_stretch;
   return error;
 }
 

@@ -39,11 +39,6 @@ MatrixXd after_gain(const MatrixXd& prior, const MatrixXd& gain, const MatrixXd&
   return posterior;
 }
 
-/// The part of the state's rows that lies along the directions.
-void keep_along(const std::optional<StateDirections>& along, MatrixXd& rows) {
-  if (along) rows.topRows<ix::size>() = (*along * (along->transpose() * rows.topRows<ix::size>())).eval();
-}
-
 /// State and mount together, as one point on their manifold.
 struct Unknowns {
   static constexpr Index kSize = ix::size + mount_index::size;
@@ -67,7 +62,7 @@ constexpr Index kTurns[] = {ix::theta, joint_index::mount + mount_index::theta};
 
 }  // namespace
 
-Clones without_poses(const CameraMount& mount, const Matrix7& covariance) {
+Clones without_poses(const CameraMount& mount, const MountMatrix& covariance) {
   return {.mount = mount, .poses = {}, .covariance = covariance};
 }
 
@@ -109,7 +104,7 @@ MatrixXd joint_covariance(const Estimate& estimate, const Clones& clones) {
 }
 
 JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const LinearizeJoint& linearize,
-                            const FilterConfig& config, const std::optional<StateDirections>& along) {
+                            const FilterConfig& config) {
   JointUpdate result{.posterior = prior, .clones = clones};
   const MatrixXd joint_prior = joint_covariance(prior, clones);
   const Unknowns before{prior.mean, clones.mount};
@@ -131,10 +126,8 @@ JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const L
     }
     // (P^-1 + H) dx = b - P^-1 d, multiplied by P from the left so that P need not be inverted.
     const Eigen::PartialPivLU<MatrixXd> system(MatrixXd::Identity(P.rows(), P.cols()) + P * result.last.H);
-    MatrixXd moved = system.solve(P * result.last.b - d) + d, gain = system.solve(P).topRows<Unknowns::kSize>();
-    keep_along(along, moved);
-    keep_along(along, gain);
-    const VectorXd step = moved.col(0) - d;
+    const VectorXd step = system.solve(P * result.last.b - d);
+    const MatrixXd gain = system.solve(P).topRows<Unknowns::kSize>();
     joint = after_gain(P, gain, result.last.H);
     x.move(step);
     for (const Index begin : kTurns) turn(joint, begin, right_jacobian(step.segment<3>(begin)));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,11 +21,11 @@ struct Clones {
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(mount_index::size, mount_index::size);
 
   std::size_t size() const { return poses.size(); }
-  Matrix7 mount_covariance() const { return covariance.topLeftCorner<mount_index::size, mount_index::size>(); }
+  MountMatrix mount_covariance() const { return covariance.topLeftCorner<mount_index::size, mount_index::size>(); }
 };
 
 /// No poses yet, and nothing known of the state that would say something of the mount.
-Clones without_poses(const CameraMount& mount, const Matrix7& covariance);
+Clones without_poses(const CameraMount& mount, const MountMatrix& covariance);
 /// A further pose: the exposure of an image at this state.
 void add_clone(Clones& clones, const Estimate& estimate, const Exposure& exposed);
 void remove_clone(Clones& clones, std::size_t index);
@@ -48,10 +47,7 @@ struct JointUpdate {
 
 /// As iterated_update, for measurements that relate the state to earlier poses: the gain is the one of the joint
 /// problem and is given to the state and the mount. Measurements whose cost the steps do not lower return the prior.
-/// `along`: orthonormal columns; then the state's gain is kept to them, whatever the sensor says of other
-/// directions.
-using StateDirections = Eigen::Matrix<double, error_index::size, Eigen::Dynamic>;
 JointUpdate iterated_update(const Estimate& prior, const Clones& clones, const LinearizeJoint& linearize,
-                            const FilterConfig& config, const std::optional<StateDirections>& along = std::nullopt);
+                            const FilterConfig& config);
 
 }  // namespace pllit

@@ -24,6 +24,7 @@ struct Keyframe {
   Time time{};
   SE3 T_W_C = SE3::Identity();
   Features features{};
+  cv::Mat image{};             ///< image_for_alignment() of what they were found in
   std::vector<float> greys{};  ///< calibrated, at the points
   cv::Mat greys_around{};      ///< calibrated, at the points and around them (photometric_chain.hpp)
   std::vector<std::optional<FeatureDepth>> depths{};  ///< of the points; nothing where the LiDAR saw none
@@ -37,6 +38,15 @@ struct PointMatch {
   double line_px = -1.0;     ///< distance to the matched line that it lies on in both images; negative: on none
 };
 
+/// Where a keyframe's point of known depth shows in the image now.
+struct PointTrack {
+  std::size_t keyframe = 0;  ///< index in the window
+  int reference = 0;         ///< index of the keyframe's point
+  Eigen::Vector2f at_px = Eigen::Vector2f::Zero();
+  bool aligned = false;   ///< to a fraction of a pixel (alignment.hpp); otherwise where a feature was found
+  double line_px = -1.0;  ///< as of the match, where there is one
+};
+
 struct LineMatch {
   std::size_t keyframe = 0;
   int reference = 0, current = 0;  ///< indices of the lines
@@ -45,7 +55,8 @@ struct LineMatch {
 
 /// What one image shares with the keyframes of a window.
 struct Tracks {
-  std::vector<PointMatch> points;
+  std::vector<PointMatch> points;  ///< of features with features
+  std::vector<PointTrack> tracked;
   std::vector<LineMatch> lines;
 };
 

@@ -36,6 +36,7 @@ struct Candidate {
 /// The current image, ready to be searched.
 struct Now {
   const Features& features;
+  const cv::Mat& image;
   PointIndex index;
 };
 
@@ -97,17 +98,21 @@ Tracks match_to_one(const Now& now, const PointsOnLines& on_lines_now, const SE3
   };
   const SE3 agreed =
       agreed_pose(keyframe, rays_K, matched_around(T_C_K, config.window_px), now.features, T_C_K, camera);
-  Tracks tracks{.points = matched_around(agreed, std::min(config.gate_px, config.window_px)), .lines = {}};
+  Tracks tracks{
+      .points = matched_around(agreed, std::min(config.gate_px, config.window_px)), .tracked = {}, .lines = {}};
   tracks.lines = match_lines(keyframe, now.features, on_lines_now, tracks.points, agreed, camera, config.lines);
   mark_anchored(tracks.points, tracks.lines, keyframe.features, now.features, config.lines);
+  tracks.tracked =
+      tracked_points(now.image, now.features, keyframe, rays_K, tracks.points, agreed, camera, config.align);
   return tracks;
 }
 
 }  // namespace
 
-Tracks match_to_keyframes(const Features& now, const SE3& T_W_C_now, std::span<const Keyframe> window,
-                          const Camera& camera, const MatchConfig& config, Arena& arena) {
-  const Now searched{now, PointIndex(now.points_px, camera.width, camera.height)};
+Tracks match_to_keyframes(const Features& now, const cv::Mat& image_now, const SE3& T_W_C_now,
+                          std::span<const Keyframe> window, const Camera& camera, const MatchConfig& config,
+                          Arena& arena) {
+  const Now searched{now, image_now, PointIndex(now.points_px, camera.width, camera.height)};
   const PointsOnLines on_lines_now = points_on_lines(now, config.lines);
   std::vector<Tracks> found(window.size());
   arena.for_chunks(window.size(), 1, [&](std::size_t k, std::size_t) {
@@ -118,6 +123,10 @@ Tracks match_to_keyframes(const Features& now, const SE3& T_W_C_now, std::span<c
     for (PointMatch& match : found[k].points) {
       match.keyframe = k;
       tracks.points.push_back(match);
+    }
+    for (PointTrack& track : found[k].tracked) {
+      track.keyframe = k;
+      tracks.tracked.push_back(track);
     }
     for (LineMatch& match : found[k].lines) {
       match.keyframe = k;

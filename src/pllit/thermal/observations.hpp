@@ -15,6 +15,7 @@ struct PointObservation {
   Eigen::Vector3d p_K_m;        ///< the point in the camera frame of that keyframe, at its LiDAR depth
   double sigma_ray_m = 0.0;     ///< standard deviation of that depth, along the ray
   Eigen::Vector2d observed_px;  ///< in the image now, as seen (distorted)
+  double sigma_px = 1.0;        ///< standard deviation of that, before weights
   double line_px = -1.0;        ///< distance to the matched line that it lies on in both images; negative: on none
 };
 

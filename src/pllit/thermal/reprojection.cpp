@@ -85,27 +85,30 @@ Distance distance_from(const EndPoint& end, const Vector3d& n_C) {
 }  // namespace
 
 std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_keyframe,
-                                            const PointObservation& observation, const SE3& T_I_C,
+                                            const PointObservation& observation, const CameraMount& mount,
                                             const Camera& camera) {
+  const SE3& T_I_C = mount.T_I_C;
   const Matrix3d R_I_W = T_W_I.rotation().transpose(), R_C_I = T_I_C.rotation().transpose();
   const Matrix3d R_W_K = T_W_I_keyframe.rotation();
-  const Vector3d point_K = T_I_C.act(observation.p_K_m);  // in I of the keyframe
+  const Vector3d p_K = (1.0 + mount.depth_stretch) * observation.p_K_m;
+  const Vector3d point_K = T_I_C.act(p_K);  // in I of the keyframe
   const Vector3d point_I = R_I_W * (R_W_K * point_K + (T_W_I_keyframe.translation() - T_W_I.translation()));
   const Vector3d point_C = R_C_I * (point_I - T_I_C.translation());
   const auto projection = camera.project_with_slope(point_C);
   if (!projection) return std::nullopt;
 
-  const Eigen::Matrix<double, 2, 3> J_pixel_I = projection->J_pixel_point * R_C_I;
+  const Eigen::Matrix<double, 2, 3>& J_pixel_C = projection->J_pixel_point;
+  const Eigen::Matrix<double, 2, 3> J_pixel_I = J_pixel_C * R_C_I;
   const Eigen::Matrix<double, 2, 3> J_pixel_W = J_pixel_I * R_I_W;
   ImageResidual residual;
   residual.r_px = observation.observed_px - projection->pixel_px;
   residual.J_now << -J_pixel_I * skew(point_I), J_pixel_W;
   residual.J_keyframe << J_pixel_W * R_W_K * skew(point_K), -J_pixel_W;
   const Matrix3d R_I_K = R_I_W * R_W_K, R_C_K = R_C_I * R_I_K * T_I_C.rotation();
-  residual.J_camera << -projection->J_pixel_point * (skew(point_C) - R_C_K * skew(observation.p_K_m)),
-      -J_pixel_I * (R_I_K - Matrix3d::Identity());
-  const Vector2d per_sigma =
-      J_pixel_W * (R_W_K * (T_I_C.rotation() * observation.p_K_m.normalized())) * observation.sigma_ray_m;
+  residual.J_camera << -J_pixel_C * (skew(point_C) - R_C_K * skew(p_K)), -J_pixel_I * (R_I_K - Matrix3d::Identity());
+  const Eigen::Matrix<double, 2, 3> J_pixel_K = J_pixel_C * R_C_K;
+  residual.J_depth = -J_pixel_K * observation.p_K_m;
+  const Vector2d per_sigma = J_pixel_K * p_K.normalized() * observation.sigma_ray_m;
   residual.model_px2 = per_sigma * per_sigma.transpose();
   return residual;
 }

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "pllit/geometry/camera.hpp"
-#include "pllit/state/nav_state.hpp"
+#include "pllit/state/camera_mount.hpp"
 #include "pllit/thermal/observations.hpp"
 
 namespace pllit {
@@ -17,13 +17,14 @@ struct ImageResidual {
   Matrix2x6 J_now = Matrix2x6::Zero();                  ///< to the pose now
   Matrix2x6 J_keyframe = Matrix2x6::Zero();             ///< to the keyframe's pose
   Matrix2x6 J_camera = Matrix2x6::Zero();               ///< to T_I_C, likewise
+  Eigen::Vector2d J_depth = Eigen::Vector2d::Zero();    ///< to the depth stretch
   Eigen::Matrix2d model_px2 = Eigen::Matrix2d::Zero();  ///< covariance that the point's depth or the line brings along
 };
 
 /// The paper's reprojection residual, in pixels of the distorted image: the derivative is the distorted model's, so an
 /// even noise of the detector stays even. Nothing where the camera does not see the point.
 std::optional<ImageResidual> point_residual(const SE3& T_W_I, const SE3& T_W_I_keyframe,
-                                            const PointObservation& observation, const SE3& T_I_C,
+                                            const PointObservation& observation, const CameraMount& mount,
                                             const Camera& camera);
 
 /// How a line lies in an image, beside its residual.

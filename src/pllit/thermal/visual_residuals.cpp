@@ -94,7 +94,7 @@ class Sums {
 
   Blocks blocks_of(const ImageResidual& residual, std::size_t keyframe) const {
     Eigen::Matrix<double, 2, mount_index::size> J_mount;
-    J_mount << residual.J_camera, residual.J_now * exposed_.J_delay;
+    J_mount << residual.J_camera, residual.J_now * exposed_.J_delay, residual.J_depth;
     return {{{0, residual.J_now * exposed_.J_state},
              {joint_index::mount, J_mount},
              {joint_index::clone(keyframe), residual.J_keyframe}}};
@@ -164,9 +164,8 @@ JointEquations linearize_image(const NavState& state, const CameraMount& mount, 
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const PointObservation& point = observations.points[i];
     assert(point.keyframe < T_W_I_keyframes.size());
-    if (const auto residual =
-            point_residual(exposed.T_W_I, T_W_I_keyframes[point.keyframe], point, mount.T_I_C, camera))
-      sums.add(*residual, config.point_sigma_px / weights[i], point.keyframe);
+    if (const auto residual = point_residual(exposed.T_W_I, T_W_I_keyframes[point.keyframe], point, mount, camera))
+      sums.add(*residual, point.sigma_px / weights[i], point.keyframe);
     else
       sums.reject();
   }
@@ -191,7 +190,7 @@ Matrix6 keyframe_noise(std::span<const Vector3d> points_K, const SE3& T_I_C, con
   Matrix6 information = least.asDiagonal();
   for (const Vector3d& p_K : points_K) {
     const PointObservation itself{.p_K_m = p_K, .observed_px = Vector2d::Zero()};
-    if (const auto residual = point_residual(SE3::Identity(), SE3::Identity(), itself, T_I_C, camera))
+    if (const auto residual = point_residual(SE3::Identity(), SE3::Identity(), itself, {.T_I_C = T_I_C}, camera))
       information.noalias() += residual->J_keyframe.transpose() * residual->J_keyframe / (sigma_px * sigma_px);
   }
   return information.ldlt().solve(Matrix6::Identity());

@@ -12,10 +12,11 @@ namespace pllit {
 
 struct VisualConfig {
   double point_sigma_px = 1.0;    ///< of a matched point: errors of both detections (the paper's R_0)
+  double aligned_sigma_px = 0.5;  ///< of a point that was aligned
   double line_sigma_px = 1.0;     ///< of a line's end point across it (the paper's R_E)
   double loss = 2.5;              ///< residual, in standard deviations, at which a match has half its say
   double gate = 3.5;              ///< residuals beyond this many standard deviations, prior included, do not count
-  double max_information = 60.0;  ///< of how many points, if sure of their depth, an image may say as much; 0: no limit
+  double max_information = 40.0;  ///< of how many points, if sure of their depth, an image may say as much; 0: no limit
   bool weights = true;            ///< more weight for points on lines
   double weight_gain = 1.5;       ///< the paper's eta
   double weight_sigma_px = 1.5;   ///< the paper's sigma: distance from the line at which the extra weight fades
