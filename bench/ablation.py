@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """What each step of the thermal-visual update adds, on rows of the table of sequences (bench/sequences.yaml; all of it simulated).
 
-    bench/ablation.py --rows H18 --duration 60                   # five runs a row and seed: about ten minutes
+    bench/ablation.py --rows H18 --duration 60                   # six runs a row and seed: about ten minutes
     bench/ablation.py --rows H04 H16 --seeds 3 --steps lidar full
     bench/ablation.py --rows N1 --duration 110 --plot n1.png     # 1 km; with python3-matplotlib: error over distance
 
 The steps: `lidar` uses no image; `points` adds points of raw images, `photometric` calibrates their greys, `weights` weights points that lie on
-lines, `full` adds explicit lines. Loops stay open. Recordings are rendered once and kept with the runs in results/ablation: a second call
+lines, `full` adds explicit lines, and `unaligned` is that without aligning points with the image. Loops stay open. Recordings are rendered once and kept with the runs in results/ablation: a second call
 runs only what is missing. Errors over 5 m (walks) or 100 m (drives) are compared with those of `lidar`, seed by seed and place by place:
 the change of their median, and its 95 % interval by a bootstrap over blocks of that length. Needs Python's standard library alone.
 """
@@ -25,6 +25,7 @@ STEPS = {
     "points": ["thermal.photometric=false", "thermal.weights=false", "thermal.lines=false"],
     "photometric": ["thermal.weights=false", "thermal.lines=false"],
     "weights": ["thermal.lines=false"],
+    "unaligned": ["advanced.vision.align=false"],
     "full": [],
 }
 

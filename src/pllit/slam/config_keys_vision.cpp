@@ -36,9 +36,11 @@ void list_vision(Section section, VisionConfig& config) {
   section.add("keyframe_points", config.keyframes.most_points, "Features of a keyframe, at most.", "", {20.0, 10000.0});
   section.add("window_px", config.matching.window_px, "How far from the prediction a feature is looked for.", "px",
               {1.0, 500.0});
+  section.add_switch("align", config.matching.align.enabled, "Lay points of known depth on the image itself.");
   section.add("keyframes", config.keyframes.most, "Keyframes that images are matched with.", "", {3.0, 50.0});
   section.add("point_sigma_px", config.residuals.point_sigma_px, "Noise of a matched point, one sigma.", "px",
               {0.05, 50.0});
+  section.add("aligned_sigma_px", config.residuals.aligned_sigma_px, "Noise of one that was aligned.", "px", {0.05, 50.0});
   section.add("line_sigma_px", config.residuals.line_sigma_px, "Noise of a line's end across it, one sigma.", "px",
               {0.05, 50.0});
   section.add("gate", config.residuals.gate, "Residuals beyond this many standard deviations do not count.", "",
