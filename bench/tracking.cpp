@@ -314,7 +314,7 @@ int main(int argc, char** argv) {
     };
     variant("not aligned", {.enabled = false});
     variant("half 4", {.half_px = 4});
-    variant("half 7", {.half_px = 7});
+    variant("half 5", {.half_px = 5});
     variant("gate 5", {.gate_px = 5.0});
     variant("correlation 0.7", {.least_correlation = 0.7});
     variant("correlation 0.9", {.least_correlation = 0.9});

@@ -94,7 +94,7 @@ struct Watched {
   bool counts = false;  ///< 16-bit counts, 30 a kelvin, that drift; a grey of the world is then a fifth of a kelvin
   Thermography stage{camera(), settings};
   Random random{1};
-  double t_s = 0.0, aim_sigma_px = 0.0;
+  double t_s = 0.0;
   int images = 0;
   std::optional<double> alarm_s{};
 
@@ -103,7 +103,7 @@ struct Watched {
   ThermographyFrame image(bool trusted = true, bool frozen = false) {
     const SE3 T_W_C = pose_at(t_s);
     const Matrix3d R_W_C = T_W_C.rotation();
-    ThermographyInput input{.time = time(), .T_W_C = T_W_C, .trusted = trusted, .aim_sigma_px = aim_sigma_px};
+    ThermographyInput input{.time = time(), .T_W_C = T_W_C, .trusted = trusted};
     for (int i = 0; i < 3000; ++i) {
       const Vector3d ray_W = R_W_C * Vector3d(random.uniform(-0.6, 0.6), random.uniform(-0.5, 0.5), 1.0).normalized();
       const double range_m = world.hit(T_W_C.translation(), ray_W, t_s).range_m;

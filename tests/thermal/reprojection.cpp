@@ -47,6 +47,10 @@ PointObservation random_point(Random& random, const Scene& scene) {
   return point;
 }
 
+std::optional<ImageResidual> residual_of(const Scene& scene, const PointObservation& point) {
+  return point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
+}
+
 SE3 camera_from_keyframe(const Scene& scene) {
   return (scene.T_W_I * scene.rig.T_I_C).inverse() * (scene.T_W_I_keyframe * scene.rig.T_I_C);
 }
@@ -69,18 +73,17 @@ TEST(PointResidual, DerivativesToBothPosesMatchCentralDifferences) {
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const PointObservation point = random_point(random, scene);
-      const auto at =
-          point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
+      const auto at = residual_of(scene, point);
       if (!at) continue;
       const Matrix2x6 now = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return point_residual(moved(scene.T_W_I, d), scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C},
-                              *scene.rig.camera)
-            ->r_px;
+        Scene other = scene;
+        other.T_W_I = moved(other.T_W_I, d);
+        return residual_of(other, point)->r_px;
       });
       const Matrix2x6 keyframe = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        return point_residual(scene.T_W_I, moved(scene.T_W_I_keyframe, d), point, {.T_I_C = scene.rig.T_I_C},
-                              *scene.rig.camera)
-            ->r_px;
+        Scene other = scene;
+        other.T_W_I_keyframe = moved(other.T_W_I_keyframe, d);
+        return residual_of(other, point)->r_px;
       });
       EXPECT_LT((at->J_now - now).norm(), 1e-5 * now.norm());
       EXPECT_LT((at->J_keyframe - keyframe).norm(), 1e-5 * keyframe.norm());
@@ -93,13 +96,12 @@ TEST(PointResidual, DerivativeToTheCamerasPoseOnTheRigMatchesCentralDifferences)
     for (int i = 0; i < 50; ++i) {
       const Scene scene = random_scene(random, camera);
       const PointObservation point = random_point(random, scene);
-      const auto at =
-          point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
+      const auto at = residual_of(scene, point);
       if (!at) continue;
       const Matrix2x6 expected = test::numerical_jacobian<2, 6>([&](const Vector6& d) {
-        Rig rig = scene.rig;
-        rig.T_I_C = moved(rig.T_I_C, d);
-        return point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = rig.T_I_C}, *rig.camera)->r_px;
+        Scene other = scene;
+        other.rig.T_I_C = moved(other.rig.T_I_C, d);
+        return residual_of(other, point)->r_px;
       });
       EXPECT_LT((at->J_camera - expected).norm(), 1e-5 * expected.norm() + 1e-6);
     }
@@ -151,14 +153,12 @@ TEST(PointResidual, NoiseIsWhatTheDepthsErrorDoesInTheImage) {
   for (int i = 0; i < 50; ++i) {
     const Scene scene = random_scene(random, test::thermal_camera());
     PointObservation point = random_point(random, scene);
-    const auto at =
-        point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
+    const auto at = residual_of(scene, point);
     if (!at) continue;
     const auto at_depth = [&](double metres) {
       PointObservation other = point;
       other.p_K_m += metres * point.p_K_m.normalized();
-      return point_residual(scene.T_W_I, scene.T_W_I_keyframe, other, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera)
-          ->r_px;
+      return residual_of(scene, other)->r_px;
     };
     const Vector2d shift = (at_depth(1e-5) - at_depth(-1e-5)) / 2e-5 * point.sigma_ray_m;
     EXPECT_LT((at->model_px2 - shift * shift.transpose()).norm(), 1e-5 * shift.squaredNorm() + 1e-12);
@@ -172,8 +172,7 @@ TEST(PointResidual, OfAPointThatIsSeenWhereItIsIsZero) {
   const PointObservation point{.p_K_m = Vector3d(0.4, -0.3, 5.0),
                                .sigma_ray_m = 0.05,
                                .observed_px = *scene.rig.camera->project({0.4, -0.3, 5.0})};
-  const auto at =
-      point_residual(scene.T_W_I, scene.T_W_I_keyframe, point, {.T_I_C = scene.rig.T_I_C}, *scene.rig.camera);
+  const auto at = residual_of(scene, point);
   EXPECT_LT(at->r_px.norm(), 1e-9);
   EXPECT_LT(at->model_px2.norm(), 1e-9);                                    // without parallax depth does not matter
   EXPECT_LT((at->J_now + at->J_keyframe).norm(), 1e-9 * at->J_now.norm());  // nor does a motion of both

@@ -40,7 +40,8 @@ void list_vision(Section section, VisionConfig& config) {
   section.add("keyframes", config.keyframes.most, "Keyframes that images are matched with.", "", {3.0, 50.0});
   section.add("point_sigma_px", config.residuals.point_sigma_px, "Noise of a matched point, one sigma.", "px",
               {0.05, 50.0});
-  section.add("aligned_sigma_px", config.residuals.aligned_sigma_px, "Noise of one that was aligned.", "px", {0.05, 50.0});
+  section.add("aligned_sigma_px", config.residuals.aligned_sigma_px, "Noise of one that was aligned.", "px",
+              {0.05, 50.0});
   section.add("line_sigma_px", config.residuals.line_sigma_px, "Noise of a line's end across it, one sigma.", "px",
               {0.05, 50.0});
   section.add("gate", config.residuals.gate, "Residuals beyond this many standard deviations do not count.", "",

@@ -58,13 +58,14 @@ std::optional<Matrix2f> step_in_keyframe(const Vector3d& p_K, const Vector3d& no
 
 /// What the image now is compared with, and how the comparison changes with a shift of it.
 struct Template {
-  Patch greys, along_u, along_v;  ///< without mean; slopes without what a gain or bias explains
+  Vector2f thought_px = Vector2f::Zero();  ///< where the pose puts its middle
+  Patch greys, along_u, along_v;           ///< without mean; slopes without what a gain or bias explains
   float squared = 0.0F;
   Matrix2f H_inverse = Matrix2f::Zero();
 };
 
-std::optional<Template> template_of(const cv::Mat& image, const Vector2f& at_px, const Matrix2f& step,
-                                    const AlignConfig& config) {
+std::optional<Template> drawn_from(const cv::Mat& image, const Vector2f& at_px, const Matrix2f& step,
+                                   const AlignConfig& config) {
   const int half = config.half_px, side = 2 * half + 1, wide = side + 2;
   const float reach = static_cast<float>(half + 1) * step.cwiseAbs().rowwise().sum().maxCoeff();
   if (!holds(image, at_px, reach)) return std::nullopt;
@@ -106,8 +107,21 @@ float sigma_px(const Template& patch, float misfit2_grey2) {
   return std::sqrt((middle + apart) * misfit2_grey2);
 }
 
+/// The surroundings of a keyframe's point of known depth, as they look from here.
+std::optional<Template> template_of(const Keyframe& keyframe, std::size_t point, const Vector3d& ray_K,
+                                    const SE3& T_C_K, const Camera& camera, const AlignConfig& config) {
+  const FeatureDepth& depth = *keyframe.depths[point];
+  const Vector3d p_K = depth.range_m * ray_K;
+  const auto step = step_in_keyframe(p_K, depth.normal_C, T_C_K, camera, config.most_scale);
+  const auto thought_px = camera.project(T_C_K.act(p_K));
+  if (!step || !thought_px) return std::nullopt;
+  auto patch = drawn_from(keyframe.image, keyframe.features.points_px[point], *step, config);
+  if (patch) patch->thought_px = thought_px->cast<float>();
+  return patch;
+}
+
 std::optional<Vector2f> laid_on(const cv::Mat& image, const Template& patch, const Vector2f& begin_px,
-                                const Vector2f& thought_px, const AlignConfig& config) {
+                                const AlignConfig& config) {
   const auto gate = static_cast<float>(config.gate_px), settled = static_cast<float>(config.settled_px);
   const Eigen::Index pixels = patch.greys.size();
   Patch greys(pixels);
@@ -122,7 +136,7 @@ std::optional<Vector2f> laid_on(const cv::Mat& image, const Template& patch, con
     const Vector2f slope_misfit((patch.along_u * greys).sum() / gain, (patch.along_v * greys).sum() / gain);
     const Vector2f step = patch.H_inverse * slope_misfit;
     at_px -= step;
-    if (!((at_px - thought_px).squaredNorm() <= gate * gate)) return std::nullopt;
+    if (!((at_px - patch.thought_px).squaredNorm() <= gate * gate)) return std::nullopt;
     if (step.squaredNorm() > settled * settled) continue;
     const float correlation = product / std::sqrt(squared * patch.squared);
     const float misfit2 = (greys / gain - patch.greys).square().sum() / static_cast<float>(pixels) + kRounding2_grey2;
@@ -146,14 +160,8 @@ cv::Mat image_for_alignment(const cv::Mat& grey) {
 std::optional<Vector2f> aligned(const cv::Mat& now, const Keyframe& keyframe, std::size_t point, const Vector3d& ray_K,
                                 const Vector2f& at_px, const SE3& T_C_K, const Camera& camera,
                                 const AlignConfig& config) {
-  const FeatureDepth& depth = *keyframe.depths[point];
-  const Vector3d p_K = depth.range_m * ray_K;
-  const auto step = step_in_keyframe(p_K, depth.normal_C, T_C_K, camera, config.most_scale);
-  const auto thought_px = camera.project(T_C_K.act(p_K));
-  if (!step || !thought_px) return std::nullopt;
-  const auto patch = template_of(keyframe.image, keyframe.features.points_px[point], *step, config);
-  if (!patch) return std::nullopt;
-  return laid_on(now, *patch, at_px, thought_px->cast<float>(), config);
+  const auto patch = template_of(keyframe, point, ray_K, T_C_K, camera, config);
+  return patch ? laid_on(now, *patch, at_px, config) : std::nullopt;
 }
 
 std::vector<PointTrack> tracked_points(const cv::Mat& now, const Features& features, const Keyframe& keyframe,
@@ -167,13 +175,12 @@ std::vector<PointTrack> tracked_points(const cv::Mat& now, const Features& featu
     if (!keyframe.depths[i]) continue;
     const PointMatch* match = match_of[i];
     PointTrack track{.reference = static_cast<int>(i), .line_px = match != nullptr ? match->line_px : -1.0};
-    std::optional<Vector2f> found;
     if (match != nullptr) track.at_px = features.points_px[static_cast<std::size_t>(match->current)];
-    if (comparable && match != nullptr)
-      found = aligned(now, keyframe, i, rays_K[i], track.at_px, T_C_K, camera, config);
-    if (comparable && !found)
-      if (const auto thought_px = camera.project(T_C_K.act(keyframe.depths[i]->range_m * rays_K[i])))
-        found = aligned(now, keyframe, i, rays_K[i], thought_px->cast<float>(), T_C_K, camera, config);
+    std::optional<Vector2f> found;
+    if (const auto patch = comparable ? template_of(keyframe, i, rays_K[i], T_C_K, camera, config) : std::nullopt) {
+      if (match != nullptr) found = laid_on(now, *patch, track.at_px, config);
+      if (!found) found = laid_on(now, *patch, patch->thought_px, config);
+    }
     if (!found && match == nullptr) continue;
     track.aligned = found.has_value();
     if (found) track.at_px = *found;
