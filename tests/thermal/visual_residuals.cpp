@@ -140,7 +140,7 @@ TEST(VisualResiduals, GradientMatchesCentralDifferencesOfTheCost) {
   Corridor corridor = corridor_of(random, {.depth_m = 0.0, .line_m = 0.0, .false_share = 0.2});
   corridor.now.v_W = Vector3d(1.5, 0.2, -0.1);
   corridor.seen.rate_I = Vector3d(0.3, -0.2, 0.8);
-  const VisualConfig config{.gate = 1e9, .max_information = 0.0};
+  const VisualConfig config{.gate = 1e9, .max_information = 0.0, .common_shift_m = 0.0};
   Point point = point_of(corridor);
   point.mount.delay_s = 0.003;
   const JointEquations at = linearized(point, corridor, config);
@@ -157,8 +157,12 @@ TEST(VisualResiduals, GradientMatchesCentralDifferencesOfTheCost) {
 TEST(VisualResiduals, InformationIsThatOfAllResidualsStackedUp) {
   Random random(32);
   const Corridor corridor = corridor_of(random, {.depth_m = 0.0, .line_m = 0.0});
-  const VisualConfig config{
-      .point_sigma_px = 1.3, .line_sigma_px = 1.3, .loss = 1e6, .max_information = 0.0, .weights = false};
+  const VisualConfig config{.point_sigma_px = 1.3,
+                            .line_sigma_px = 1.3,
+                            .loss = 1e6,
+                            .max_information = 0.0,
+                            .common_shift_m = 0.0,
+                            .weights = false};
   const JointEquations at =
       linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera, config);
   // One residual at a time: b of a problem with one residual r and weight W is -J'Wr, squared is r'Wr.
@@ -195,7 +199,7 @@ TEST(VisualResiduals, ClaimNoMoreInformationThanTheCap) {
   const Corridor corridor = corridor_of(random, {.depth_m = 0.0}, 40, 0);
   const auto with_cap = [&](double cap) {
     return linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera,
-                           {.max_information = cap, .weights = false});
+                           {.max_information = cap, .common_shift_m = 0.0, .weights = false});
   };
   const JointEquations all = with_cap(0.0), some = with_cap(20.0);
   EXPECT_EQ(all.inliers, some.inliers);
@@ -204,6 +208,21 @@ TEST(VisualResiduals, ClaimNoMoreInformationThanTheCap) {
   EXPECT_LT((some.b - share * all.b).norm(), 1e-9 * all.b.norm());
   EXPECT_NEAR(some.cost, share * all.cost, 1e-9 * all.cost);
   EXPECT_NEAR(some.squared / some.expected, all.squared / all.expected, 1e-9);
+}
+
+TEST(VisualResiduals, TellAShiftNoBetterThanTheErrorsThatTheyShareHoweverNearTheyAre) {
+  Random random(39);
+  Corridor corridor = corridor_of(random, {.depth_m = 0.0}, 40, 0);
+  const auto with_shift = [&](double common_shift_m) {
+    return linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera,
+                           {.max_information = 0.0, .common_shift_m = common_shift_m, .weights = false});
+  };
+  const JointEquations all = with_shift(0.0), some = with_shift(0.05);
+  const double shift_information = some.H.block<3, 3>(error_index::p, error_index::p).trace();
+  EXPECT_LE(shift_information, 2.0 / (0.05 * 0.05));
+  EXPECT_GT(shift_information, 1.5 / (0.05 * 0.05));  // the loss takes a part
+  EXPECT_NEAR(some.squared / some.expected, all.squared / all.expected, 1e-9);
+  EXPECT_LT((with_shift(1e-9).H - all.H).norm(), 1e-12 * all.H.norm());
 }
 
 TEST(VisualResiduals, LeaveThePointsTheirSayBesideLinesThatAreHardlyKnown) {
@@ -309,7 +328,7 @@ TEST(KeyframeNoise, IsTheSpreadOfPosesThatNoisyKeyframesShow) {
       point.observed_px = *corridor.rig.camera->project(point.p_K_m) + pixel_noise(random, {.pixel_px = 0.7});
     const JointEquations at =
         linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera,
-                        {.loss = 1e6, .gate = 1e9, .max_information = 0.0, .weights = false});
+                        {.loss = 1e6, .gate = 1e9, .max_information = 0.0, .common_shift_m = 0.0, .weights = false});
     const Vector6 shown = at.H.topLeftCorner<6, 6>().ldlt().solve(at.b.head<6>());
     spread += shown * shown.transpose() / trials;
   }
@@ -387,8 +406,9 @@ Consistency simulate(const Noise& noise, const VisualConfig& config, unsigned se
 }
 
 TEST(VisualUpdate, RecoversTheMotionAlongACorridorAsWellAsItClaims) {
-  const Consistency points = simulate({}, {.max_information = 0.0, .weights = false, .lines = false}, 1000);
-  const Consistency both = simulate({}, {.max_information = 0.0, .weights = false}, 1000);
+  const Consistency points =
+      simulate({}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false, .lines = false}, 1000);
+  const Consistency both = simulate({}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false}, 1000);
   for (const Consistency& mean : {points, both}) {
     for (int i = 0; i < 6; ++i) {
       EXPECT_GT(mean.normalised[i], 0.3) << i;
@@ -405,7 +425,7 @@ TEST(VisualUpdate, RecoversTheMotionAlongACorridorAsWellAsItClaims) {
 
 TEST(VisualUpdate, HoldsByLinesWhereThereAreFewPoints) {
   const auto along_m = [](bool lines) {
-    return simulate({}, {.max_information = 0.0, .weights = false, .lines = lines}, 1000,
+    return simulate({}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false, .lines = lines}, 1000,
                     {.points_per_keyframe = 2, .trials = 200})
         .rms_along_m;
   };
@@ -415,7 +435,8 @@ TEST(VisualUpdate, HoldsByLinesWhereThereAreFewPoints) {
 }
 
 TEST(VisualUpdate, SurvivesThirtyPercentOfGrossOutliers) {
-  const Consistency mean = simulate({.false_share = 0.3}, {.max_information = 0.0, .weights = false}, 2000);
+  const Consistency mean =
+      simulate({.false_share = 0.3}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false}, 2000);
   for (int i = 0; i < 6; ++i) {
     EXPECT_GT(mean.normalised[i], 0.3) << i;
     EXPECT_LT(mean.normalised[i], 3.0) << i;
@@ -424,13 +445,13 @@ TEST(VisualUpdate, SurvivesThirtyPercentOfGrossOutliers) {
 }
 
 TEST(VisualUpdate, ShowsABadImageInTheMisfit) {
-  const VisualConfig config{.max_information = 0.0, .weights = false};
+  const VisualConfig config{.max_information = 0.0, .common_shift_m = 0.0, .weights = false};
   EXPECT_GT(simulate({.pixel_px = 2.5}, config, 4000).innovation.misfit, 1.5);
 }
 
 TEST(VisualUpdate, ShowsAWrongExtrinsicInTheInnovations) {
   const SE3 wrong = pose_from(exp_so3(Vector3d(0.0, 0.5 * M_PI / 180.0, 0.0)), Vector3d::Zero());
-  const VisualConfig config{.max_information = 0.0, .weights = false};
+  const VisualConfig config{.max_information = 0.0, .common_shift_m = 0.0, .weights = false};
   // A scan leaves but millimetres between the keyframes, except along the corridor.
   const Prior prior(0.0005, 0.002);
   const Innovation right = simulate({}, config, 3000, {.prior = prior}).innovation;

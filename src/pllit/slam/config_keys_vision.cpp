@@ -48,6 +48,8 @@ void list_vision(Section section, VisionConfig& config) {
               {0.1, 100.0});
   section.add("max_information", config.residuals.max_information,
               "Of how many points an image may say as much, at most; 0: no limit.", "", {0.0, 1e6});
+  section.add("common_shift_m", config.residuals.common_shift_m,
+              "What an image can tell a shift to at best, one sigma; 0: no limit.", "m", {0.0, 1.0});
   section.add("weight_gain", config.residuals.weight_gain, "Weight of a point on a line (the paper's eta).", "",
               {1.0, 10.0});
   section.add("weight_sigma_px", config.residuals.weight_sigma_px,

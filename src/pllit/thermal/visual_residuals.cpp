@@ -57,6 +57,8 @@ class Sums {
     }
     ++equations_.inliers;
     points_worth_ += 0.5 * config_.point_sigma_px * config_.point_sigma_px * information.trace();
+    const Eigen::Matrix<double, 2, 3> J_shift = residual.J_now.rightCols<3>();
+    shift_information_ += 0.5 * (J_shift.transpose() * information * J_shift).trace();
     const Loss loss = cauchy(squared, config_.loss);
     equations_.cost += loss.cost;
     equations_.squared += loss.weight * squared;
@@ -72,9 +74,13 @@ class Sums {
   JointEquations capped() && {
     JointEquations& sums = equations_;
     sums.expected = sums.inliers * mean_weighted_square(config_.loss);
-    // Errors of calibration and timing are common to all of an image: together its points may claim only so much.
-    if (config_.max_information > 0.0 && points_worth_ > config_.max_information) {
-      const double share = config_.max_information / points_worth_;
+    // Errors of calibration and timing are common to all of an image, in pixels, and so are those of depths, in metres:
+    // together its points may claim only so much.
+    double share = 1.0;
+    if (config_.max_information > 0.0) share = std::min(share, config_.max_information / points_worth_);
+    if (config_.common_shift_m > 0.0)
+      share = std::min(share, 1.0 / (config_.common_shift_m * config_.common_shift_m * shift_information_));
+    if (share < 1.0) {
       sums.H *= share;
       sums.b *= share;
       sums.cost *= share;
@@ -118,7 +124,8 @@ class Sums {
 
   const Exposure& exposed_;
   JointEquations equations_;
-  double points_worth_ = 0.0;  ///< how many points of no other noise than the detector's say as much
+  double points_worth_ = 0.0;       ///< how many points of no other noise than the detector's say as much
+  double shift_information_ = 0.0;  ///< on a shift, the mean of two directions, 1/m2
   const VisualConfig& config_;
   const MatrixXd& search_;
 };

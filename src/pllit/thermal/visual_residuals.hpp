@@ -17,6 +17,7 @@ struct VisualConfig {
   double loss = 2.5;              ///< residual, in standard deviations, at which a match has half its say
   double gate = 3.5;              ///< residuals beyond this many standard deviations, prior included, do not count
   double max_information = 40.0;  ///< of how many points, if sure of their depth, an image may say as much; 0: no limit
+  double common_shift_m = 0.006;  ///< what an image can tell a shift to at best, one sigma; 0: no limit
   bool weights = true;            ///< more weight for points on lines
   double weight_gain = 1.5;       ///< the paper's eta
   double weight_sigma_px = 1.5;   ///< the paper's sigma: distance from the line at which the extra weight fades
