@@ -92,6 +92,7 @@ struct Watched {
   ThermographyConfig settings = config();
   double drift_grey = 12.0;  ///< of the gain control
   bool counts = false;  ///< 16-bit counts, 30 a kelvin, that drift; a grey of the world is then a fifth of a kelvin
+  double aim_off_px = 0.0, aim_sigma_px = 0.0;  ///< how far off the camera's aim is, and is said to be
   Thermography stage{camera(), settings};
   Random random{1};
   double t_s = 0.0;
@@ -103,7 +104,8 @@ struct Watched {
   ThermographyFrame image(bool trusted = true, bool frozen = false) {
     const SE3 T_W_C = pose_at(t_s);
     const Matrix3d R_W_C = T_W_C.rotation();
-    ThermographyInput input{.time = time(), .T_W_C = T_W_C, .trusted = trusted};
+    const SE3 aim_off = pose_from(exp_so3({0.0, aim_off_px / camera().fx, 0.0}), Vector3d::Zero());
+    ThermographyInput input{.time = time(), .T_W_C = T_W_C * aim_off, .trusted = trusted, .aim_sigma_px = aim_sigma_px};
     for (int i = 0; i < 3000; ++i) {
       const Vector3d ray_W = R_W_C * Vector3d(random.uniform(-0.6, 0.6), random.uniform(-0.5, 0.5), 1.0).normalized();
       const double range_m = world.hit(T_W_C.translation(), ray_W, t_s).range_m;
@@ -234,6 +236,21 @@ TEST(Thermography, RaisesNoAlarmInCountsThatDrift) {
   watched.world.boxes.push_back({{4.6, 0.8, 0.6}, {0.6, 0.8, 0.6}, steady(170.0)});
   watched.until(30.0);
   EXPECT_TRUE(watched.alarms().empty()) << watched.told();
+}
+
+TEST(Thermography, TakesNoEdgeForHeatAsLongAsItIsToldThatTheCameraMayLookAside) {
+  const auto alarms = [](double aim_sigma_px) {
+    Watched watched{.world = room(), .settings = counting(), .counts = true};
+    watched.world.boxes.push_back({{4.6, 0.8, 0.6}, {0.6, 0.8, 0.6}, steady(170.0)});
+    watched.aim_sigma_px = aim_sigma_px;
+    watched.aim_off_px = 3.0;
+    watched.until(6.0);
+    watched.aim_off_px = -3.0;
+    watched.until(14.0);
+    return watched.alarms().size();
+  };
+  EXPECT_GT(alarms(0.0), 0u) << "or this test tells nothing";
+  EXPECT_EQ(alarms(1.5), 0u);
 }
 
 TEST(Thermography, TellsWhenEachHotPointWasLastSeenSoThatLoopsCanMoveIt) {
