@@ -423,6 +423,15 @@ TEST(VisualUpdate, RecoversTheMotionAlongACorridorAsWellAsItClaims) {
   EXPECT_LT(both.rms_along_m, 0.03);
 }
 
+TEST(VisualUpdate, SeesNoMisfitInGoodImagesHoweverLittleTheyMaySay) {
+  for (const double most : {4.0, 10.0, 40.0}) {
+    const Consistency mean =
+        simulate({}, {.max_information = most, .common_shift_m = 0.0, .weights = false, .lines = false}, 3000);
+    EXPECT_NEAR(mean.innovation.misfit, 1.0, 0.2) << most;
+    EXPECT_NEAR(mean.innovation.correction, 1.0, 0.4) << most;
+  }
+}
+
 TEST(VisualUpdate, HoldsByLinesWhereThereAreFewPoints) {
   const auto along_m = [](bool lines) {
     return simulate({}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false, .lines = lines}, 1000,

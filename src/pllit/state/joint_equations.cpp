@@ -18,9 +18,13 @@ Innovation innovation(const JointEquations& at_end, const Eigen::VectorXd& moved
                                                     prior * at_end.H);
   const Eigen::VectorXd x = system.solve(prior * b);
   const double correction = x.dot(b - at_end.H * x);  // x' P^-1 x
-  const double expected = system.solve(prior * at_end.H).trace();
-  return {.misfit = (squared - x.dot(b) - correction) / std::max(1.0, at_end.expected - expected),
-          .correction = correction / expected};
+  // The means of both: b is H times the prior's error and noise of covariance share x H, for what the residuals say was
+  // cut, not their noise raised. Without a cut they are expected - tr G and tr G, the numbers that the state fits.
+  const Eigen::MatrixXd G = system.solve(prior * at_end.H);
+  const double fitted = G.trace(), squares = G.cwiseProduct(G.transpose()).sum(), share = at_end.share;
+  const double left = at_end.expected + (1.0 - 2.0 * share) * fitted - (1.0 - share) * squares;
+  return {.misfit = (squared - x.dot(b) - correction) / std::max(share, left),
+          .correction = correction / (squares + share * (fitted - squares))};
 }
 
 }  // namespace pllit

@@ -21,6 +21,7 @@ struct JointEquations {
   double cost = 0.0;      ///< sum of robust squared, whitened residuals
   double squared = 0.0;   ///< r'Wr: sum of squared, whitened residuals times their robust weights
   double expected = 0.0;  ///< mean of `squared` where the residuals are as noisy as they are said to be
+  double share = 1.0;     ///< of what the residuals say, if their errors are independent, that all of this is
   int candidates = 0;     ///< residuals that were tried
   int inliers = 0;        ///< residuals that count
 

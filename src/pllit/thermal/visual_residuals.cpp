@@ -86,6 +86,7 @@ class Sums {
       sums.cost *= share;
       sums.squared *= share;
       sums.expected *= share;
+      sums.share = share;
     }
     return std::move(sums);
   }
