@@ -62,14 +62,15 @@ Expected<Vision::Look> Vision::look(const CameraFrame& image) const {
   if (grey.depth() == CV_16U) {
     look.range = count_range(grey, range_, config_.grey);
     grey = mapped(grey, *look.range);
-  } else if (config_.photometric) {
+  }
+  look.image = image_for_alignment(grey);  // a gain and a bias of its own suit each patch better than one curve all
+  if (look.counts.depth() == CV_8U && config_.photometric) {
     if (look.verdict.after_shutter) look.chain = restarted(chain_, grey);
     grey = calibrated_image(grey, look.chain.curve);
   }
   auto features = extractor_->extract(grey);
   if (!features) return std::unexpected(features.error());
   look.features = std::move(*features);
-  look.image = image_for_alignment(grey);
   look.around = greys_around(look.counts, look.features.points_px);
   return look;
 }

@@ -57,7 +57,7 @@ class Vision {
     PhotometricChain chain{};    ///< that it was corrected with
     std::optional<CountRange> range{};
     Features features{};
-    cv::Mat image{};  ///< image_for_alignment() of what they were found in
+    cv::Mat image{};  ///< image_for_alignment() of it, greys not calibrated
   };
   Expected<Look> look(const CameraFrame& image) const;
   ImageObservations observe(const Features& features, const Tracks& tracks, const Moment& moment) const;

@@ -24,7 +24,7 @@ struct Keyframe {
   Time time{};
   SE3 T_W_C = SE3::Identity();
   Features features{};
-  cv::Mat image{};             ///< image_for_alignment() of what they were found in
+  cv::Mat image{};             ///< image_for_alignment() of what they were found in, greys not calibrated
   std::vector<float> greys{};  ///< calibrated, at the points
   cv::Mat greys_around{};      ///< calibrated, at the points and around them (photometric_chain.hpp)
   std::vector<std::optional<FeatureDepth>> depths{};  ///< of the points; nothing where the LiDAR saw none

@@ -27,7 +27,7 @@ struct MatchConfig {
 /// pass the ratio test, and agree with the other matches of the keyframe on a pose near the predicted one. Lines
 /// are matched through the points, and points that lie on matched lines in both images marked (the paper's
 /// structure-anchored points). Points of known depth, matched or not, are then aligned with the image itself.
-/// image_now: image_for_alignment() of what the features were found in; empty: nothing is aligned. T_W_C_now:
+/// image_now: image_for_alignment() of the image, greys not calibrated; empty: nothing is aligned. T_W_C_now:
 /// predicted. The keyframes' T_W_C: as estimated now.
 Tracks match_to_keyframes(const Features& now, const cv::Mat& image_now, const SE3& T_W_C_now,
                           std::span<const Keyframe> window, const Camera& camera, const MatchConfig& config,
