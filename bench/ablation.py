@@ -3,7 +3,7 @@
 
     bench/ablation.py --rows H18 --duration 60                   # six runs a row and seed: about ten minutes
     bench/ablation.py --rows H04 H16 --seeds 3 --steps lidar full
-    bench/ablation.py --rows N1 --duration 110 --plot n1.png     # 1 km; with python3-matplotlib: error over distance
+    bench/ablation.py --rows N1 --duration 160 --plot n1.png     # 1 km; with python3-matplotlib: error over distance
 
 The steps: `lidar` uses no image; `points` adds points of raw images, `photometric` calibrates their greys, `weights` weights points that lie on
 lines, `full` adds explicit lines, and `unaligned` is that without aligning points with the image. Loops stay open. Recordings are rendered once and kept with the runs in results/ablation: a second call

@@ -112,6 +112,12 @@ SE3 moved(const SE3& T_W_I, const Vector6& error) {
   return pose_from(T_W_I.asSO3() * exp_so3(error.head<3>()), T_W_I.translation() + error.tail<3>());
 }
 
+/// Residuals say all that they can.
+VisualConfig unbounded(VisualConfig config) {
+  config.max_information = config.common_shift_m = 0.0;
+  return config;
+}
+
 /// What a joint error is added to.
 struct Point {
   NavState now;
@@ -140,7 +146,7 @@ TEST(VisualResiduals, GradientMatchesCentralDifferencesOfTheCost) {
   Corridor corridor = corridor_of(random, {.depth_m = 0.0, .line_m = 0.0, .false_share = 0.2});
   corridor.now.v_W = Vector3d(1.5, 0.2, -0.1);
   corridor.seen.rate_I = Vector3d(0.3, -0.2, 0.8);
-  const VisualConfig config{.gate = 1e9, .max_information = 0.0, .common_shift_m = 0.0};
+  const VisualConfig config = unbounded({.gate = 1e9});
   Point point = point_of(corridor);
   point.mount.delay_s = 0.003;
   const JointEquations at = linearized(point, corridor, config);
@@ -157,12 +163,7 @@ TEST(VisualResiduals, GradientMatchesCentralDifferencesOfTheCost) {
 TEST(VisualResiduals, InformationIsThatOfAllResidualsStackedUp) {
   Random random(32);
   const Corridor corridor = corridor_of(random, {.depth_m = 0.0, .line_m = 0.0});
-  const VisualConfig config{.point_sigma_px = 1.3,
-                            .line_sigma_px = 1.3,
-                            .loss = 1e6,
-                            .max_information = 0.0,
-                            .common_shift_m = 0.0,
-                            .weights = false};
+  const VisualConfig config = unbounded({.point_sigma_px = 1.3, .line_sigma_px = 1.3, .loss = 1e6, .weights = false});
   const JointEquations at =
       linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera, config);
   // One residual at a time: b of a problem with one residual r and weight W is -J'Wr, squared is r'Wr.
@@ -328,7 +329,7 @@ TEST(KeyframeNoise, IsTheSpreadOfPosesThatNoisyKeyframesShow) {
       point.observed_px = *corridor.rig.camera->project(point.p_K_m) + pixel_noise(random, {.pixel_px = 0.7});
     const JointEquations at =
         linearize_image(corridor.now, corridor.mount(), corridor.keyframes, corridor.seen, *corridor.rig.camera,
-                        {.loss = 1e6, .gate = 1e9, .max_information = 0.0, .common_shift_m = 0.0, .weights = false});
+                        unbounded({.loss = 1e6, .gate = 1e9, .weights = false}));
     const Vector6 shown = at.H.topLeftCorner<6, 6>().ldlt().solve(at.b.head<6>());
     spread += shown * shown.transpose() / trials;
   }
@@ -406,9 +407,8 @@ Consistency simulate(const Noise& noise, const VisualConfig& config, unsigned se
 }
 
 TEST(VisualUpdate, RecoversTheMotionAlongACorridorAsWellAsItClaims) {
-  const Consistency points =
-      simulate({}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false, .lines = false}, 1000);
-  const Consistency both = simulate({}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false}, 1000);
+  const Consistency points = simulate({}, unbounded({.weights = false, .lines = false}), 1000);
+  const Consistency both = simulate({}, unbounded({.weights = false}), 1000);
   for (const Consistency& mean : {points, both}) {
     for (int i = 0; i < 6; ++i) {
       EXPECT_GT(mean.normalised[i], 0.3) << i;
@@ -434,8 +434,7 @@ TEST(VisualUpdate, SeesNoMisfitInGoodImagesHoweverLittleTheyMaySay) {
 
 TEST(VisualUpdate, HoldsByLinesWhereThereAreFewPoints) {
   const auto along_m = [](bool lines) {
-    return simulate({}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false, .lines = lines}, 1000,
-                    {.points_per_keyframe = 2, .trials = 200})
+    return simulate({}, unbounded({.weights = false, .lines = lines}), 1000, {.points_per_keyframe = 2, .trials = 200})
         .rms_along_m;
   };
   const double with_m = along_m(true), without_m = along_m(false);
@@ -444,8 +443,7 @@ TEST(VisualUpdate, HoldsByLinesWhereThereAreFewPoints) {
 }
 
 TEST(VisualUpdate, SurvivesThirtyPercentOfGrossOutliers) {
-  const Consistency mean =
-      simulate({.false_share = 0.3}, {.max_information = 0.0, .common_shift_m = 0.0, .weights = false}, 2000);
+  const Consistency mean = simulate({.false_share = 0.3}, unbounded({.weights = false}), 2000);
   for (int i = 0; i < 6; ++i) {
     EXPECT_GT(mean.normalised[i], 0.3) << i;
     EXPECT_LT(mean.normalised[i], 3.0) << i;
@@ -454,13 +452,13 @@ TEST(VisualUpdate, SurvivesThirtyPercentOfGrossOutliers) {
 }
 
 TEST(VisualUpdate, ShowsABadImageInTheMisfit) {
-  const VisualConfig config{.max_information = 0.0, .common_shift_m = 0.0, .weights = false};
+  const VisualConfig config = unbounded({.weights = false});
   EXPECT_GT(simulate({.pixel_px = 2.5}, config, 4000).innovation.misfit, 1.5);
 }
 
 TEST(VisualUpdate, ShowsAWrongExtrinsicInTheInnovations) {
   const SE3 wrong = pose_from(exp_so3(Vector3d(0.0, 0.5 * M_PI / 180.0, 0.0)), Vector3d::Zero());
-  const VisualConfig config{.max_information = 0.0, .common_shift_m = 0.0, .weights = false};
+  const VisualConfig config = unbounded({.weights = false});
   // A scan leaves but millimetres between the keyframes, except along the corridor.
   const Prior prior(0.0005, 0.002);
   const Innovation right = simulate({}, config, 3000, {.prior = prior}).innovation;

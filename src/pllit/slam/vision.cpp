@@ -64,7 +64,7 @@ Expected<Vision::Look> Vision::look(const CameraFrame& image) const {
     grey = mapped(grey, *look.range);
   }
   look.image = image_for_alignment(grey);  // a gain and a bias of its own suit each patch better than one curve all
-  if (look.counts.depth() == CV_8U && config_.photometric) {
+  if (is_calibrated(look)) {
     if (look.verdict.after_shutter) look.chain = restarted(chain_, grey);
     grey = calibrated_image(grey, look.chain.curve);
   }
@@ -244,7 +244,7 @@ void Vision::keep(const Lesson& lesson, const DepthImage& depths, Arena& arena) 
     if (const auto& found = keyframe.depths[i])
       points_K.push_back(found->range_m * rig_.camera->ray(pixels_px[i].cast<double>()));
   const cv::Mat around = look.around.rowRange(0, static_cast<int>(pixels_px.size()));
-  set_greys(keyframe, around, look.counts.depth() == CV_8U ? chain_.curve : GreyCurve{});
+  set_greys(keyframe, around, is_calibrated(look) ? chain_.curve : GreyCurve{});
   add_clone(clones_, posterior, exposed);
   clones_.covariance.bottomRightCorner<6, 6>() +=
       keyframe_noise(points_K, mount().T_I_C, *rig_.camera, config_.residuals.point_sigma_px);
