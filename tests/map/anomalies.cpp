@@ -58,20 +58,24 @@ TEST(Anomalies, AreNotWhatMayAllBeAnEdgeThatIsSeenAFewPixelsOff) {
   EXPECT_TRUE(is_alarm_where_less_is_beside(but_for_the_first(3)));
 }
 
-/// Whether an alarm is raised for an upright strip, a voxel wide, that shows 100, and `grey_of(image)` from the sixth
-/// second on.
+/// Whether an alarm is raised for an upright strip, so many voxels wide, that shows 100, and `grey_of(image, y)` in its
+/// y-th voxel from the sixth second on.
 template <class Grey>
-bool is_alarm_for_strip(const Grey& grey_of) {
+bool is_alarm_for_strip(const Grey& grey_of, int wide = 1) {
   ThermalMap map({});
   const SightLog past({});
   AnomalyDetector detector({});
   for (int image = 0; image < 120; ++image) {
     const Time time{std::chrono::milliseconds(100 * image)};
     ThermalView view{.time = time, .viewpoint_W = Vector3d(0.0, 0.1 * image, 0.0)};
-    const float grey = image < 60 ? 100.0F : grey_of(image);
-    for (int z = 0; z < 5; ++z)
-      view.observations.push_back(
-          {.p_W = Vector3d(3.0, 0.125, 0.125 + 0.05 * z), .pixel_px = {0.0F, 0.0F}, .intensity = grey, .raw = grey});
+    for (int y = 0; y < wide; ++y) {
+      const float grey = image < 60 ? 100.0F : grey_of(image, y);
+      for (int z = 0; z < 5; ++z)
+        view.observations.push_back({.p_W = Vector3d(3.0, 0.125 + 0.05 * y, 0.125 + 0.05 * z),
+                                     .pixel_px = {0.0F, 0.0F},
+                                     .intensity = grey,
+                                     .raw = grey});
+    }
     const auto seen = map.integrate(view);
     const Sight sight = sight_of(time, view.viewpoint_W, {}, past.config());
     detector.update({.map = map, .seen = seen, .sight = sight, .past = past}, view);
@@ -80,8 +84,17 @@ bool is_alarm_for_strip(const Grey& grey_of) {
 }
 
 TEST(Anomalies, AreNotTheRimOfAThingBehindWhichSomethingHotPasses) {
-  EXPECT_TRUE(is_alarm_for_strip([](int) { return 160.0F; })) << "a strip may be hot";
-  EXPECT_FALSE(is_alarm_for_strip([](int image) { return image < 64 ? 600.0F : 140.0F; }));
+  EXPECT_TRUE(is_alarm_for_strip([](int, int) { return 160.0F; })) << "a strip may be hot";
+  EXPECT_FALSE(is_alarm_for_strip([](int image, int) { return image < 64 ? 600.0F : 140.0F; }));
+}
+
+TEST(Anomalies, MustLastWhereTheyAreUnevenlyHot) {
+  const auto one_much_hotter_until = [](int end) {
+    return [end](int image, int y) { return image >= end ? 100.0F : y == 0 ? 900.0F : 200.0F; };
+  };
+  EXPECT_FALSE(is_alarm_for_strip(one_much_hotter_until(75), 5)) << "a round thing's rim, as it is passed";
+  EXPECT_TRUE(is_alarm_for_strip(one_much_hotter_until(120), 5)) << "a bearing on a warm motor";
+  EXPECT_TRUE(is_alarm_for_strip([](int image, int) { return image < 75 ? 300.0F : 100.0F; }, 5)) << "even, as short";
 }
 
 TEST(Anomalies, InVideoAreOnlyWhatOutshinesWhatIsNormallyBrighter) {

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "support/random_states.hpp"
 
@@ -44,6 +46,7 @@ SurfacePoints clutter(Random& random, int count) {
     points.points_W.emplace_back(static_cast<float>(random.uniform(-3.0, 3.0)),
                                  static_cast<float>(random.uniform(-3.0, 3.0)),
                                  static_cast<float>(depth + random.normal(0.01)));
+    points.fresh.push_back(i % 4 == 0 ? 1 : 0);
   }
   return points;
 }
@@ -54,7 +57,7 @@ std::vector<std::size_t> naive(const SurfacePoints& points, const SE3& T_W_C, co
     std::size_t index;
     int column, row;
     float range_m;
-    bool in_sight = true;
+    bool in_sight = true, fresh = false;
   };
   std::vector<Seen> seen;
   for (std::size_t i = 0; i < points.points_W.size(); ++i) {
@@ -66,7 +69,8 @@ std::vector<std::size_t> naive(const SurfacePoints& points, const SE3& T_W_C, co
     if (pixel->x() < b || pixel->y() < b || pixel->x() > camera().width - 1 - b || pixel->y() > camera().height - 1 - b)
       continue;
     seen.push_back({i, static_cast<int>(pixel->x() + 0.5) / config.cell_px,
-                    static_cast<int>(pixel->y() + 0.5) / config.cell_px, static_cast<float>(p_C.norm())});
+                    static_cast<int>(pixel->y() + 0.5) / config.cell_px, static_cast<float>(p_C.norm()), true,
+                    points.fresh[i] != 0});
   }
   const auto step = [&](float r) {
     return static_cast<float>(config.depth_step_m + config.depth_step_share * double(r));
@@ -75,9 +79,32 @@ std::vector<std::size_t> naive(const SurfacePoints& points, const SE3& T_W_C, co
     const int reach = static_cast<int>(std::ceil(px / config.cell_px));
     return std::abs(a.column - b.column) <= reach && std::abs(a.row - b.row) <= reach;
   };
-  for (Seen& a : seen)
+  const auto spacing_px = [&](float range_m) { return config.shadow_m * 302.5 / static_cast<double>(range_m); };
+  std::vector<std::vector<float>> covering_m(64, std::vector<float>(80, std::numeric_limits<float>::infinity()));
+  for (int row = 0; row < 64; ++row)
+    for (int column = 0; column < 80; ++column)
+      for (const Seen& b : seen) {
+        float& least_m = covering_m[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+        if (near({.index = 0, .column = column, .row = row, .range_m = 0.0F}, b, spacing_px(b.range_m)))
+          least_m = std::min(least_m, b.range_m);
+      }
+  const auto surrounded = [&](const Seen& a, float before_m) {
+    const auto at = [&](int column, int row) {
+      return covering_m[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+    };
+    if (at(a.column, a.row) >= before_m) return false;
+    const int reach = static_cast<int>(std::ceil(spacing_px(at(a.column, a.row)) / config.cell_px));
+    for (int row = std::max(0, a.row - reach); row <= std::min(63, a.row + reach); ++row)
+      for (int column = std::max(0, a.column - reach); column <= std::min(79, a.column + reach); ++column)
+        if (at(column, row) >= before_m) return false;
+    return true;
+  };
+  for (Seen& a : seen) {
+    const float before_m = a.range_m - step(a.range_m);
     for (const Seen& b : seen)
-      if (near(a, b, 0) && b.range_m < a.range_m - step(a.range_m)) a.in_sight = false;
+      if (near(a, b, 0) && b.range_m < before_m) a.in_sight = false;
+    if (a.in_sight && !a.fresh && surrounded(a, before_m)) a.in_sight = false;
+  }
   std::vector<std::size_t> kept;
   for (const Seen& a : seen) {
     bool clear = true;
@@ -117,6 +144,27 @@ TEST(SampleImage, DoesNotLookThroughANearSurfaceBetweenItsPoints) {
     }
   for (const SurfaceObservation& seen : sample_image(points, SE3::Identity(), camera(), pattern_images(), {}))
     EXPECT_LT(seen.range_m, 1.0F);
+}
+
+TEST(SampleImage, DoesNotTakeAWallBehindASparselyMeasuredThingForItsSurroundings) {
+  // A thing of 40 cm, 4 m away, that is measured every 10 cm, which is 8 pixels; a wall behind that was measured
+  // before.
+  SurfacePoints points;
+  for (int x = -20; x <= 20; ++x)
+    for (int y = -20; y <= 20; ++y)
+      points.points_W.emplace_back(0.06F * static_cast<float>(x), 0.06F * static_cast<float>(y), 5.0F);
+  for (int x = -2; x <= 2; ++x)
+    for (int y = -2; y <= 2; ++y)
+      points.points_W.emplace_back(0.1F * static_cast<float>(x), 0.1F * static_cast<float>(y), 4.0F);
+  const auto seen_of_thing = [&] {
+    int inside = 0, rim = 0;
+    for (const SurfaceObservation& seen : sample_image(points, SE3::Identity(), camera(), pattern_images(), {}))
+      if (seen.p_W.z() < 4.5) ++(seen.p_W.head<2>().cwiseAbs().maxCoeff() < 0.15 ? inside : rim);
+    return std::pair{inside, rim};
+  };
+  EXPECT_EQ(seen_of_thing(), std::pair(9, 0)) << "inside, and at the rim, where the image mixes it with the wall";
+  points.fresh.assign(points.points_W.size(), 1);
+  EXPECT_EQ(seen_of_thing(), std::pair(0, 0)) << "of a fence before a wall";
 }
 
 TEST(SampleImage, LeavesOutTheWallBesideAPanelThatHardlyStandsOut) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sim/world/test_place.hpp"
 
 namespace pllit {
@@ -29,6 +31,19 @@ TEST(Sighting, LiesOnTheSideThatWasSeen) {
   Sighting sighting;
   add_side(sighting, 0.3F, 0.4F, 2);
   EXPECT_LT((*sighting.centroid_O() - Vector3d(0.3, 0.2, 0.1)).norm(), 1e-3);
+}
+
+TEST(Sightings, CountNothingAsHotBeforeItHasWarmedUp) {
+  Actor actor;
+  actor.appears_s = 3.0;
+  EXPECT_EQ(hot_from_s(actor), 3.0) << "brought in hot";
+  const auto warmed_by = [](float by_K) {
+    Actor warming;
+    warming.heating = {{.at_s = 10.0, .by_K = by_K, .over_s = 15.0}};
+    return by_K * (1.0 - std::exp((10.0 - hot_from_s(warming)) / 15.0));
+  };
+  EXPECT_NEAR(warmed_by(25.0F), 5.0, 1e-6);
+  EXPECT_NEAR(warmed_by(5.0F), 4.0, 1e-6);
 }
 
 TEST(Sightings, CountThePartOfALongThingThatIsNearEnough) {

@@ -313,6 +313,30 @@ TEST(Thermography, FindsAHotThingThatWasBroughtIn) {
   EXPECT_LT(*watched.alarm_s, 18.0);
 }
 
+TEST(Thermography, SeesWhatStandsOnATableThatItSeesAtAGrazingAngle) {
+  PlaneMap planes({});
+  PointCloud top;
+  std::vector<Vector3f> thing_W;
+  for (int x = 0; x < 40; ++x)
+    for (int y = -20; y < 20; ++y) {
+      top.points_I.emplace_back(2.0F + 0.05F * static_cast<float>(x), 0.05F * static_cast<float>(y), 1.2F);
+      if (x == 20 && std::abs(y) < 3) thing_W.push_back(top.points_I.back() + Vector3f(0.0F, 0.0F, 0.15F));
+    }
+  planes.insert(top, SE3::Identity());
+  const auto seen_of = [&](const std::vector<Vector3f>& points_W) {
+    Thermography stage(camera(), config());
+    return stage
+        .process({.time = Time(from_seconds(1e6)),
+                  .T_W_C = pose_at(0.0),
+                  .raw = cv::Mat(camera().height, camera().width, CV_8UC1, cv::Scalar(100)),
+                  .points_W = points_W,
+                  .planes = &planes})
+        .observations;
+  };
+  EXPECT_EQ(seen_of(top.points_I), 0);
+  EXPECT_EQ(seen_of(thing_W), static_cast<int>(thing_W.size()));
+}
+
 TEST(Thermography, LeavesAloneWhatIsBroughtInCold) {
   for (const double grey : {40.0, 85.0}) {
     Watched watched{.world = room()};

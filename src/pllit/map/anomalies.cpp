@@ -266,11 +266,12 @@ void AnomalyDetector::settle(Track& track, const Parts& parts, Time now, const T
   const int sure = sure_seeds(parts, config_.sure_change * model.min_change);
   if (sure < kFewestSeeds || 3 * sure < seeds) return;
   const bool thin = is_thin(anomaly, map.config().voxel_m);
-  if (thin && anomaly.mean_change < config_.thin_evenness * anomaly.peak_change) return;
+  const bool even = anomaly.mean_change >= config_.evenness * anomaly.peak_change;
+  if (thin && !even) return;
   const int views = thin ? 2 * config_.min_views : config_.min_views;
   const bool watched_long =
       to_seconds(now - anomaly.first_seen) >= config_.still_dwell_s && anomaly.frames >= kStillFrames;
-  if (anomaly.views < views && !watched_long) return;
+  if ((anomaly.views < views || !even) && !watched_long) return;
   if (config_.min_outshone > 0.0 && track.outshining < kOutshining) return;
   anomaly.state = AnomalyState::confirmed;
   anomaly.confirmed = now;

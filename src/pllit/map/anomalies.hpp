@@ -17,9 +17,9 @@ struct AnomalyConfig {
   int min_views = 2;  ///< viewpoints that it must have been hot from, twice as many where it is one voxel thick: what
                       ///< is seen past an edge moves ...
   double still_dwell_s = 3.0;  ///< ... or how long, for a rig that stands
-  /// Where it is one voxel thick its mean change must be so much of the greatest: the rim of a thing shows now and then
-  /// what is behind it.
-  double thin_evenness = 0.4;
+  /// Its mean change must be so much of the greatest, or it must have lasted for still_dwell_s; and so much where it is
+  /// one voxel thick, however long it lasted: the rim of a thing shows now and then what is behind it.
+  double evenness = 0.4;
   /// So much of the least change must be left in a third of the voxels that are judged by themselves, and in two,
   /// however they lie to the edges of the image: at its edge a hot thing may be a seam that is seen a few pixels off,
   /// inside it is one.

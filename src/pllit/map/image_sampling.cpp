@@ -24,6 +24,7 @@ struct Projected {
   int cell;
   Vector3f p_W;       ///< from the camera
   Vector3f normal_W;  ///< towards the camera; zero where it is not known
+  bool fresh;         ///< measured by the last scans, so that nothing hides it
 
   float cos_incidence() const { return -p_W.dot(normal_W) / range_m; }
 };
@@ -91,7 +92,8 @@ std::vector<Projected> projected(const SurfacePoints& points, const SE3& T_W_C, 
                     .range_m = static_cast<float>(range_m),
                     .cell = grid.cell_at(*pixel),
                     .p_W = from_camera_W,
-                    .normal_W = towards * normal_W});
+                    .normal_W = towards * normal_W,
+                    .fresh = !points.fresh.empty() && points.fresh[i] != 0});
   }
   return seen;
 }
@@ -114,11 +116,12 @@ class Obstruction {
     }
     for (const std::size_t i : first_)
       if (i != kNone) nearest_[points[i].cell] = points[i].range_m;
+    const auto nearer = [](float a, float b) { return std::min(a, b); };
+    covering_ = spread(nearest_, nearer, [&](float range_m) { return spacing(range_m); });
+    reaching_ = spread(nearest_, nearer, [&](float range_m) { return shadow(range_m); });
     std::ranges::fill(farthest_.values, -kInfinity);
     for (const Projected& point : points)
-      if (nearest_[point.cell] >= point.range_m - step_m(point))
-        farthest_[point.cell] = std::max(farthest_[point.cell], point.range_m);
-    reaching_ = spread(nearest_, [](float a, float b) { return std::min(a, b); }, [&](float m) { return shadow(m); });
+      if (!is_covered(point)) farthest_[point.cell] = std::max(farthest_[point.cell], point.range_m);
     farthest_ = spread(
         farthest_, [](float a, float b) { return std::max(a, b); }, [&](float) { return cells(config.edge_px); });
   }
@@ -134,6 +137,8 @@ class Obstruction {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   int cells(double px) const { return static_cast<int>(std::ceil(px / nearest_.cell_px)); }
+  /// Cells that lie between the points of a surface.
+  int spacing(float range_m) const { return cells(shadow_px_m_ / static_cast<double>(range_m)); }
   /// Cells around a point of a surface that it may hide.
   int shadow(float range_m) const { return cells(config_.shadow_px + shadow_px_m_ / static_cast<double>(range_m)); }
   /// What makes one surface nearer than another where its slope is not known.
@@ -145,6 +150,18 @@ class Obstruction {
     const auto cos = static_cast<double>(std::max(0.05F, point.cos_incidence()));
     const double slope = std::sqrt(std::max(0.0, 1.0 - cos * cos)) / cos;  // of range over way across
     return static_cast<float>(config_.depth_step_m + slope * static_cast<double>(point.range_m) * edge_rad_);
+  }
+
+  /// Whether a nearer surface hides a point: one that lies in its cell, or on all sides of what was measured before.
+  bool is_covered(const Projected& point) const {
+    const float before_m = point.range_m - step_m(point), covering_m = covering_[point.cell];
+    if (nearest_[point.cell] < before_m) return true;
+    if (point.fresh || covering_m >= before_m) return false;
+    const int column = point.cell % nearest_.columns, row = point.cell / nearest_.columns, reach = spacing(covering_m);
+    for (int r = std::max(0, row - reach); r <= std::min(nearest_.rows - 1, row + reach); ++r)
+      for (int c = std::max(0, column - reach); c <= std::min(nearest_.columns - 1, column + reach); ++c)
+        if (covering_[r * nearest_.columns + c] >= before_m) return false;
+    return true;
   }
 
   /// Whether, among the cells around, the first surface of any reaches the point and stands out of its plane.
@@ -165,6 +182,7 @@ class Obstruction {
   double shadow_px_m_, edge_rad_;
   std::vector<std::size_t> first_;  ///< nearest point of each cell
   CellGrid nearest_;                ///< its range
+  CellGrid covering_ = nearest_;    ///< the least range of the surfaces between whose points a cell may lie
   CellGrid reaching_ = nearest_;    ///< the least range of those whose shadows reach a cell
   CellGrid farthest_;               ///< the greatest of those in sight next to a cell
 };
@@ -233,6 +251,7 @@ std::vector<SurfaceObservation> sample_image(const SurfacePoints& points, const 
                                              const ImagePair& images, const SamplingConfig& config,
                                              const std::optional<Smear>& smear) {
   assert(points.normals_W.empty() || points.normals_W.size() == points.points_W.size());
+  assert(points.fresh.empty() || points.fresh.size() == points.points_W.size());
   assert(images.calibrated.type() == CV_32FC1 && images.calibrated.size() == images.raw.size());
   assert(images.raw.cols == camera.width && images.raw.rows == camera.height);
   assert(config.border_px >= 0);

@@ -1,6 +1,7 @@
 // What an image shows of surfaces whose points are known: which of them are really seen, and how bright they are.
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <span>
@@ -41,9 +42,11 @@ struct SamplingConfig {
   double depth_step_share = 0.035;  ///< ... or where that is not known, nearer by it and this share of the range
 };
 
-/// Points with unit normals (zero where unknown), in W; equally many of both, or no normals at all.
+/// Points with unit normals (zero where unknown), in W, and whether the last scans measured them; equally many of each,
+/// or none at all.
 struct SurfacePoints {
   std::vector<Vector3f> points_W, normals_W;
+  std::vector<std::uint8_t> fresh{};
 };
 
 /// Images of one exposure, of the camera's size: calibrated CV_32FC1, raw CV_8UC1 or CV_16UC1.

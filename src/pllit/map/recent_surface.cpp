@@ -117,6 +117,7 @@ SurfacePoints RecentSurface::points(const ViewCone& view, const NormalAt& normal
       }
       points.points_W.push_back(p_W);
       points.normals_W.push_back(cell.normal_W);
+      points.fresh.push_back(to_seconds(now_ - cell.last) < config_.fresh_s ? 1 : 0);
     }
   }
   return points;

@@ -22,6 +22,7 @@ struct RecentSurfaceConfig {
   double radius_m = 12.0;  ///< around the rig
   double memory_m = 2.0;   ///< what was not measured on the last so many metres of way is forgotten
   double memory_s = 20.0;  ///< nor for so long
+  double fresh_s = 0.3;    ///< what was measured so lately is called fresh
 };
 
 /// Holds everything that an image may show as far as `reach_m`, and somewhat more.

@@ -56,6 +56,14 @@ double begins_s(const Actor& actor) {
   return actor.heating.empty() ? actor.appears_s : std::max(actor.appears_s, actor.heating.front().at_s);
 }
 
+double hot_from_s(const Actor& actor) {
+  constexpr double kHot_K = 5.0, kMost = 0.8;
+  if (actor.heating.empty()) return actor.appears_s;
+  const Actor::Heating& heating = actor.heating.front();
+  const double share = std::min(kMost, kHot_K / std::abs(static_cast<double>(heating.by_K)));
+  return std::max(actor.appears_s, heating.at_s - heating.over_s * std::log1p(-share));
+}
+
 void Sighting::add(const Vector3f& p_O, double range_m) {
   nearest_m = std::min(nearest_m.value_or(range_m), range_m);
   Patch& patch = patches_[voxel_key(voxel_of(p_O, 1.0F / static_cast<float>(kPatch_m)))];
@@ -73,7 +81,7 @@ std::optional<Vector3d> Sighting::centroid_O() const {
 void Sightings::look(const RayCaster& caster, const Camera& camera, const SE3& T_W_C, double t_s) {
   for (std::uint32_t i = 0; i < seen_.size(); ++i) {
     const Actor& actor = place_->actors()[i];
-    if (!actor.finding || t_s < begins_s(actor) || t_s > actor.vanishes_s) continue;
+    if (!actor.finding || t_s < hot_from_s(actor) || t_s > actor.vanishes_s) continue;
     const SE3 T_C_O = T_W_C.inverse() * actor.path.front().T_W_O;
     const auto window = window_of(actor, camera, T_C_O);
     if (!window) continue;

@@ -40,8 +40,7 @@ class Sightings {
 
   explicit Sightings(const Place* place) : place_(place), seen_(place ? place->actors().size() : 0) {}
 
-  /// A frame at t_s since the start: findings that have begun to be one (they appeared, or heat up) and fill enough
-  /// pixels.
+  /// A frame at t_s since the start: findings that are hot by then and fill enough pixels.
   void look(const RayCaster& caster, const Camera& camera, const SE3& T_W_C, double t_s);
   const std::vector<Sighting>& seen() const { return seen_; }
 
@@ -52,5 +51,8 @@ class Sightings {
 
 /// When an actor becomes a finding: as it appears, or with its first heating.
 double begins_s(const Actor& actor);
+/// From when on it is hot: as it appears, or once its first heating has warmed it by 5 K, or by four fifths where that
+/// is less.
+double hot_from_s(const Actor& actor);
 
 }  // namespace pllit

@@ -171,13 +171,15 @@ std::optional<Smear> Thermography::smear_of(const ThermographyInput& input) {
 }
 
 SurfacePoints Thermography::surface_in_view(const ThermographyInput& input) {
-  std::map<std::array<VoxelKey, 2>, Vector3f> normals_W;  // neighbouring points share their plane
+  std::map<std::array<VoxelKey, 2>, std::optional<PlanePatch>> planes;  // neighbouring points share theirs
   const auto normal_at = [&](const Vector3d& p_W) -> Vector3f {
     if (!input.planes) return Vector3f::Zero();
-    const auto [at, is_new] = normals_W.try_emplace(input.planes->window_at(p_W).corners, Vector3f::Zero());
-    if (is_new)
-      if (const auto plane = input.planes->plane_at(p_W)) at->second = plane->normal_W().cast<float>();
-    return at->second;
+    const auto [at, is_new] = planes.try_emplace(input.planes->window_at(p_W).corners, std::nullopt);
+    if (is_new) at->second = input.planes->plane_at(p_W);
+    const std::optional<PlanePatch>& plane = at->second;
+    // What stands on a table is no part of its top, though the table is all that is known around there.
+    if (!plane || std::abs(plane->distance_m(p_W)) > config_.surface.voxel_m) return Vector3f::Zero();
+    return plane->normal_W().cast<float>();
   };
   return surface_.points(view_cone(input.T_W_C, camera_, config_.sampling.max_range_m), normal_at);
 }
