@@ -147,6 +147,33 @@ TEST(VisitChanges, TellAHotThingThatWasNotThere) {
   EXPECT_LT((found.changes.front().position_W - Vector3d(0.92, 3.52, 0.92)).norm(), 0.06);
 }
 
+/// Points every 5 cm of a block, all of one intensity.
+PointTable block(const Vector3f& from_W, const Eigen::Vector3i& points, double value) {
+  PointTable table{.points = {}, .fields = {{"intensity", {}}, {"normal", {}}, {"sigma", {}}, {"images", {}}}};
+  for (int i = 0; i < points.x(); ++i)
+    for (int j = 0; j < points.y(); ++j)
+      for (int k = 0; k < points.z(); ++k) {
+        table.points.push_back(from_W + 0.05F * Eigen::Vector3i(i, j, k).cast<float>());
+        for (const std::size_t field : {0U, 1U}) table.fields[field].values.push_back(static_cast<float>(value));
+        table.fields[2].values.push_back(5.0F);
+        table.fields[3].values.push_back(20.0F);
+      }
+  return table;
+}
+
+TEST(VisitChanges, TellAllOfAHotThingThatCameBesideOneThatWasAlwaysHot) {
+  Random random(1);
+  PointTable before = wall(random);
+  append(before, block({1.22F, 3.02F, 0.32F}, {10, 11, 30}, 300.0));  // a machine, on both visits
+  PointTable now = before;
+  append(now, block({0.32F, 3.52F, 0.82F}, {16, 1, 10}, 280.0));
+  const VisitChanges found = between(before, now);
+  ASSERT_EQ(found.changes.size(), 1u);
+  EXPECT_EQ(found.changes.front().kind, VisitChangeKind::new_hot);
+  EXPECT_EQ(found.changes.front().voxels, 8 * 5);
+  EXPECT_LT((found.changes.front().position_W - Vector3d(0.695, 3.52, 1.045)).norm(), 0.02);
+}
+
 TEST(VisitChanges, AreNotClaimedOfAPlaceThatTheFirstVisitDidNotLookThrough) {
   Random random(1);
   const PointTable before = wall(random), now = wall(random, {.box = true});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
 #include "pllit/map/surroundings.hpp"
@@ -88,24 +89,55 @@ void add_known(const Voxels& before, const Voxels& now, const VisitDrift& drift,
   }
 }
 
-/// Surfaces where the first visit's LiDAR knew none, hotter than those around that it knew: as the second visit sees
-/// both, for the first one's camera may have looked elsewhere.
+/// A new surface against those around it that the first visit's LiDAR knew: as the second visit sees both, for the
+/// first one's camera may have looked elsewhere.
+std::optional<Changed> heat_of_new(const Voxels& now, VoxelKey key, const Known& seen, const SeenSpace& space_before,
+                                   const VisitChangesConfig& config) {
+  const int reach = std::max(1, static_cast<int>(config.surround_m / config.voxel_m));
+  std::vector<double> around;
+  for_neighbours(key, reach, [&](VoxelKey next) {
+    const auto other = now.find(next);
+    if (other != now.end() && space_before.surface_at(next)) around.push_back(other->second.mean());
+  });
+  const auto surroundings = surroundings_of(std::move(around));
+  if (!surroundings) return std::nullopt;
+  const double change = seen.mean() - surroundings->upper;
+  const double sigma = std::hypot(surroundings->spread, std::sqrt(seen.mean_variance_below()));
+  if (change <= std::max(config.min_change, config.gate_sigmas * sigma)) return std::nullopt;
+  return Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma, seen.points};
+}
+
+/// Surfaces where the first visit's LiDAR knew none, hotter than what stands around; and what is new as well, next to
+/// them and half as hot: a large thing's middle has nothing around it, and a side of it may stand next to a hot one.
 void add_new(const Voxels& now, const SeenSpace& space_before, const VisitChangesConfig& config,
              std::map<VoxelKey, Changed>& changed) {
-  const int reach = std::max(1, static_cast<int>(config.surround_m / config.voxel_m));
+  struct Part {
+    VoxelKey key;
+    double normal, sigma, least;  ///< of the one that was judged by itself, from which it was reached
+  };
+  std::vector<Part> parts;
   for (const auto& [key, seen] : now) {
     if (space_before.surface_at(key)) continue;
-    std::vector<double> around;
-    for_neighbours(key, reach, [&](VoxelKey next) {
-      const auto other = now.find(next);
-      if (other != now.end() && space_before.surface_at(next)) around.push_back(other->second.mean());
+    const auto heat = heat_of_new(now, key, seen, space_before, config);
+    if (!heat) continue;
+    changed.emplace(key, *heat);
+    parts.push_back({.key = key,
+                     .normal = seen.mean() - heat->change,
+                     .sigma = heat->change / heat->sigmas,
+                     .least = std::max(config.min_change, 0.5 * heat->change)});
+  }
+  while (!parts.empty()) {
+    const Part part = parts.back();
+    parts.pop_back();
+    for_neighbours(part.key, 1, [&](VoxelKey next) {
+      const auto seen = now.find(next);
+      if (seen == now.end() || changed.contains(next) || space_before.surface_at(next)) return;
+      const double change = seen->second.mean() - part.normal;
+      if (change < part.least) return;
+      changed.emplace(next, Changed{VisitChangeKind::new_hot, seen->second.mean_W(), change, change / part.sigma,
+                                    seen->second.points});
+      parts.push_back({.key = next, .normal = part.normal, .sigma = part.sigma, .least = part.least});
     });
-    const auto surroundings = surroundings_of(std::move(around));
-    if (!surroundings) continue;
-    const double change = seen.mean() - surroundings->upper;
-    const double sigma = std::hypot(surroundings->spread, std::sqrt(seen.mean_variance_below()));
-    if (change > std::max(config.min_change, config.gate_sigmas * sigma))
-      changed.emplace(key, Changed{VisitChangeKind::new_hot, seen.mean_W(), change, change / sigma, seen.points});
   }
 }
 
