@@ -16,16 +16,23 @@ struct Difference {
   bool box = false;               ///< a hot thing in front of the wall
 };
 
+PointTable no_points() {
+  return {.points = {}, .fields = {{"intensity", {}}, {"normal", {}}, {"sigma", {}}, {"images", {}}}};
+}
+
+/// A point that was seen often enough, as intense as is normal there.
+void add_point(PointTable& table, const Vector3f& p_W, double value) {
+  table.points.push_back(p_W);
+  table.fields[0].values.push_back(static_cast<float>(value));
+  table.fields[1].values.push_back(static_cast<float>(value));
+  table.fields[2].values.push_back(5.0F);
+  table.fields[3].values.push_back(20.0F);
+}
+
 /// Three metres by two of a wall with warm and cool bricks, as a thermographic map.
 PointTable wall(Random& random, const Difference& difference = {}) {
-  PointTable table{.points = {}, .fields = {{"intensity", {}}, {"normal", {}}, {"sigma", {}}, {"images", {}}}};
-  const auto add = [&](const Vector3f& p, double value) {
-    table.points.push_back(p);
-    table.fields[0].values.push_back(static_cast<float>(value));
-    table.fields[1].values.push_back(static_cast<float>(value));
-    table.fields[2].values.push_back(5.0F);
-    table.fields[3].values.push_back(20.0F);
-  };
+  PointTable table = no_points();
+  const auto add = [&](const Vector3f& p_W, double value) { add_point(table, p_W, value); };
   for (int i = 0; i < 60; ++i)
     for (int k = 0; k < 40; ++k) {
       const Vector3f p(0.05F * static_cast<float>(i) + 0.02F, 4.02F, 0.05F * static_cast<float>(k) + 0.02F);
@@ -149,15 +156,11 @@ TEST(VisitChanges, TellAHotThingThatWasNotThere) {
 
 /// Points every 5 cm of a block, all of one intensity.
 PointTable block(const Vector3f& from_W, const Eigen::Vector3i& points, double value) {
-  PointTable table{.points = {}, .fields = {{"intensity", {}}, {"normal", {}}, {"sigma", {}}, {"images", {}}}};
+  PointTable table = no_points();
   for (int i = 0; i < points.x(); ++i)
     for (int j = 0; j < points.y(); ++j)
-      for (int k = 0; k < points.z(); ++k) {
-        table.points.push_back(from_W + 0.05F * Eigen::Vector3i(i, j, k).cast<float>());
-        for (const std::size_t field : {0U, 1U}) table.fields[field].values.push_back(static_cast<float>(value));
-        table.fields[2].values.push_back(5.0F);
-        table.fields[3].values.push_back(20.0F);
-      }
+      for (int k = 0; k < points.z(); ++k)
+        add_point(table, from_W + 0.05F * Eigen::Vector3i(i, j, k).cast<float>(), value);
   return table;
 }
 

@@ -136,7 +136,8 @@ void add_new(const Voxels& now, const SeenSpace& space_before, const VisitChange
       if (change < part.least) return;
       changed.emplace(next, Changed{VisitChangeKind::new_hot, seen->second.mean_W(), change, change / part.sigma,
                                     seen->second.points});
-      parts.push_back({.key = next, .normal = part.normal, .sigma = part.sigma, .least = part.least});
+      parts.push_back(part);
+      parts.back().key = next;
     });
   }
 }
