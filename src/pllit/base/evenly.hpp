@@ -7,10 +7,11 @@
 namespace pllit {
 
 /// At most `count` values, evenly by index.
-template <class Value>
-std::vector<Value> evenly(const std::vector<Value>& values, std::size_t count) {
-  if (values.size() <= count) return values;
-  std::vector<Value> kept;
+template <class Values>
+std::vector<typename Values::value_type> evenly(const Values& values, std::size_t count) {
+  if (values.size() <= count) return {values.begin(), values.end()};
+  std::vector<typename Values::value_type> kept;
+  kept.reserve(count);
   for (std::size_t i = 0; i < count; ++i) kept.push_back(values[i * values.size() / count]);
   return kept;
 }

@@ -64,14 +64,10 @@ class VoxelTable {
     rebuild(keys_.size(), keep);
   }
 
-  /// The same for the next `count` slots from `begin` on; returns where to go on. A walk over slots() in steps, which
-  /// makes no new table.
-  template <class Keep>
-  std::size_t retain_some(std::size_t begin, std::size_t count, const Keep& keep) {
-    std::size_t i = begin & mask_;
-    for (std::size_t n = 0; n < std::min(count, keys_.size()); ++n, i = (i + 1) & mask_)
-      while (keys_[i] != empty && !keep(keys_[i], cells_[i])) erase(i);
-    return i;
+  /// Takes out one cell, if it is there.
+  void erase(VoxelKey key) {
+    for (std::size_t i = slot(key); keys_[i] != empty; i = (i + 1) & mask_)
+      if (keys_[i] == key) return erase_slot(i);
   }
 
   template <class Visit>
@@ -82,7 +78,6 @@ class VoxelTable {
 
   void clear() { allocate(1024); }
   std::size_t size() const { return size_; }
-  std::size_t slots() const { return keys_.size(); }
   std::size_t bytes() const { return keys_.capacity() * (sizeof(VoxelKey) + sizeof(Cell)); }
 
  private:
@@ -96,7 +91,7 @@ class VoxelTable {
   }
 
   /// Cells further on that could have stood in the hole move up, so that no search ends early.
-  void erase(std::size_t hole) {
+  void erase_slot(std::size_t hole) {
     for (std::size_t i = (hole + 1) & mask_; keys_[i] != empty; i = (i + 1) & mask_) {
       if (((i - slot(keys_[i])) & mask_) < ((i - hole) & mask_)) continue;
       keys_[hole] = keys_[i];

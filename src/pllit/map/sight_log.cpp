@@ -171,10 +171,13 @@ bool is_seen_through(const Sight& sight, const Vector3d& p_W, const SightConfig&
   return Aim(sight, p_W, config).is_free();
 }
 
+bool SightLog::is_due(Time time, const Vector3d& p_W) const {
+  return sights_.empty() || (p_W - sights_.back().p_W).norm() >= config_.spacing_m ||
+         to_seconds(time - sights_.back().time) >= config_.spacing_s;
+}
+
 void SightLog::add(Sight sight) {
-  if (!sights_.empty() && (sight.p_W - sights_.back().p_W).norm() < config_.spacing_m &&
-      to_seconds(sight.time - sights_.back().time) < config_.spacing_s)
-    return;
+  if (!is_due(sight.time, sight.p_W)) return;
   sights_.push_back(std::move(sight));
   if (static_cast<int>(sights_.size()) > config_.most) sights_.pop_front();
 }

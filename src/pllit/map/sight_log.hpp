@@ -56,7 +56,9 @@ class SightLog {
  public:
   explicit SightLog(const SightConfig& config) : config_(config) {}
 
-  /// Keeps the sight where the rig has moved, or stood, enough since the last one kept.
+  /// Whether the rig has moved, or stood, enough since the last sight kept.
+  bool is_due(Time time, const Vector3d& p_W) const;
+  /// Keeps the sight where one is due.
   void add(Sight sight);
   SightEvidence evidence(const Vector3d& p_W, Time before) const;
   const SightConfig& config() const { return config_; }

@@ -66,18 +66,15 @@ void ThermalMap::forget(const Vector3d& p_W) {
 PointTable ThermalMap::trim() {
   PointTable dropped;
   for (const std::string& name : fields()) dropped.fields.push_back({name, {}});
-  // The table doubles when half full, so the limit holds for the size after the next doubling.
-  const double bytes_each = sizeof(VoxelKey) + sizeof(ThermalVoxel);
-  const auto most = static_cast<std::size_t>(std::max(1000.0, config_.memory_mb * 1e6 / (4.0 * bytes_each)));
-  if (voxels_.size() <= most) return dropped;
+  if (static_cast<double>(bytes()) <= config_.memory_mb * 1e6) return dropped;
   std::vector<Time> times;
-  voxels_.for_each([&](VoxelKey, const ThermalVoxel& voxel) { times.push_back(voxel.last_seen); });
-  const auto oldest_kept = times.begin() + static_cast<std::ptrdiff_t>(times.size() - most * 3 / 4);
+  voxels_.for_each([&](const Eigen::Vector3i&, const ThermalVoxel& voxel) { times.push_back(voxel.last_seen); });
+  const auto oldest_kept = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 4);
   std::ranges::nth_element(times, oldest_kept);
   const Time limit = *oldest_kept;
-  voxels_.retain([&](VoxelKey key, const ThermalVoxel& voxel) {
+  voxels_.retain([&](const Eigen::Vector3i& at, const ThermalVoxel& voxel) {
     if (voxel.last_seen > limit) return true;
-    if (voxel.points > 0.0F) append(dropped, key, voxel, *start_);
+    if (voxel.points > 0.0F) append(dropped, at, voxel, *start_);
     return false;
   });
   return dropped;
@@ -95,8 +92,8 @@ std::vector<std::string> ThermalMap::fields() {
   return {"intensity", "normal", "sigma", "raw", "images", "views", "change_sigmas", "seen_s", "saturated"};
 }
 
-void ThermalMap::append(PointTable& table, VoxelKey key, const ThermalVoxel& voxel, Time start) const {
-  table.points.push_back(position_W(key, voxel).cast<float>());
+void ThermalMap::append(PointTable& table, const Eigen::Vector3i& at, const ThermalVoxel& voxel, Time start) const {
+  table.points.push_back(position_W(voxel_key(at), voxel).cast<float>());
   const float sigma = voxel.sigma(config_.model);
   const std::array<float, 9> values{voxel.present(),
                                     voxel.mean,
@@ -113,8 +110,8 @@ void ThermalMap::append(PointTable& table, VoxelKey key, const ThermalVoxel& vox
 PointTable ThermalMap::table() const {
   PointTable table;
   for (const std::string& name : fields()) table.fields.push_back({name, {}});
-  voxels_.for_each([&](VoxelKey key, const ThermalVoxel& voxel) {
-    if (voxel.points > 0.0F) append(table, key, voxel, *start_);
+  voxels_.for_each([&](const Eigen::Vector3i& at, const ThermalVoxel& voxel) {
+    if (voxel.points > 0.0F) append(table, at, voxel, *start_);
   });
   return table;
 }

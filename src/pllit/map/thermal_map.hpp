@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pllit/geometry/voxel_table.hpp"
+#include "pllit/geometry/voxel_blocks.hpp"
 #include "pllit/map/image_sampling.hpp"
 #include "pllit/map/thermal_voxel.hpp"
 #include "pllit/state/table.hpp"
@@ -58,10 +58,10 @@ class ThermalMap {
 
  private:
   Vector3d centre_W(VoxelKey key) const;
-  void append(PointTable& table, VoxelKey key, const ThermalVoxel& voxel, Time start) const;
+  void append(PointTable& table, const Eigen::Vector3i& at, const ThermalVoxel& voxel, Time start) const;
 
   ThermalMapConfig config_;
-  VoxelTable<ThermalVoxel> voxels_;
+  VoxelBlocks<ThermalVoxel> voxels_;
   std::optional<Time> start_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "pllit/base/evenly.hpp"
 #include "pllit/map/hot_parts.hpp"
 #include "pllit/map/new_surfaces.hpp"
 #include "pllit/map/surroundings.hpp"
@@ -28,8 +29,9 @@ bool explained_by_neighbours(const ThermalMap& map, const Watch& watch, VoxelKey
 
 /// A quick look before all that: is it hotter than most of the image?
 float level_of(const WatchInput& input) {
+  constexpr std::size_t kEnough = 1000;
   std::vector<float> values;
-  for (const VoxelKey key : input.seen) values.push_back(input.map.find(key)->present());
+  for (const VoxelKey key : evenly(input.seen, kEnough)) values.push_back(input.map.find(key)->present());
   if (values.empty()) return 0.0F;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 2 / 5);
   std::ranges::nth_element(values, at);
@@ -190,22 +192,24 @@ Watch watched(Watch watch, const WatchInput& input, const WatchConfig& config) {
   const float level = level_of(input);
   NewSurfaces surfaces(input, watch, config);
   std::vector<VoxelKey> fresh;
+  auto next = watch.begin();  // both ascend
   for (const VoxelKey key : input.seen) {
     const ThermalVoxel& voxel = *input.map.find(key);
-    if (const auto found = watch.find(key); found != watch.end()) {
-      WatchedVoxel& known = found->second;
+    while (next != watch.end() && next->first < key) ++next;
+    if (next != watch.end() && next->first == key) {
+      WatchedVoxel& known = next->second;
       if (is_away(known, input)) continue;
       follow(known, key, voxel, input, config);
-      if (known.hot && known.joined && known.new_surface)
-        judge_part(watch, surfaces, key, voxel, input, config);
+      if (known.hot && known.joined && known.new_surface) judge_part(watch, surfaces, key, voxel, input, config);
       continue;
     }
+    const std::size_t before = watch.size();
     if (voxel.hot)
       take_in_known(watch, key, voxel, input, config);
     else if (!voxel.learned(model) && voxel.images >= static_cast<std::uint32_t>(model.hits) &&
              voxel.mean - level > static_cast<float>(model.min_change))
       take_in_new(watch, surfaces, key, voxel, input, config);
-    if (watch.contains(key)) fresh.push_back(key);
+    if (watch.size() > before) fresh.push_back(key);
   }
   take_in_parts(watch, std::move(fresh), input, config);
   notice_leaving(watch, input);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <opencv2/core.hpp>
 
@@ -49,6 +51,15 @@ double aim_sigma_px(const RefinedMount& mount, const Camera& camera) {
   const Vector3d turn_rad = mount.covariance.diagonal().segment<3>(mount_index::theta).cwiseSqrt();
   return std::max(std::max(camera.fx, camera.fy) * turn_rad.head<2>().maxCoeff(),
                   0.5 * std::max(camera.width, camera.height) * turn_rad.z());
+}
+
+/// All that lies in a view, and of the rest one point in so many.
+std::vector<Vector3f> thinned_outside(const ViewFrustum& view, const std::vector<Vector3f>& points_W,
+                                      std::size_t share) {
+  std::vector<Vector3f> kept_W;
+  for (std::size_t i = 0; i < points_W.size(); ++i)
+    if (i % share == 0 || view.contains(points_W[i].cast<double>())) kept_W.push_back(points_W[i]);
+  return kept_W;
 }
 
 }  // namespace
@@ -145,17 +156,26 @@ SamplingConfig Thermography::sampling_of(const ThermographyInput& input) const {
   return sampling;
 }
 
-/// Surfaces stay in memory for a while, but not where the last scans see through them.
+/// Surfaces stay in memory for a while, but not where the last scans see through them. What the camera is not turned to
+/// is to be known when it turns there, so it is followed too, but by fewer points and less often.
 void Thermography::remember_scan(const ThermographyInput& input) {
+  constexpr double kTurn_rad = 0.26;  // before the next image
+  constexpr std::size_t kBehind = 6;
   if (input.points_W.empty()) return;
+  const double reach_m = config_.sampling.max_range_m, everywhere_m = std::numeric_limits<double>::infinity();
+  const ViewFrustum view = view_frustum(input.T_W_C, camera_, reach_m),
+                    near_view = view_frustum(input.T_W_C, camera_, everywhere_m, kTurn_rad);
   scans_.push_back(evenly(input.points_W, static_cast<std::size_t>(config_.scan_points)));
-  surface_.add(scans_.back(), input.T_W_C.translation(), input.time);
   while (static_cast<int>(scans_.size()) > config_.scans) scans_.pop_front();
+  surface_.add(thinned_outside(near_view, scans_.back(), kBehind), view.apex_W, input.time);
+  const bool whole = sights_.is_due(input.time, view.apex_W);
   std::vector<Vector3f> fresh_W;
-  for (const auto& scan_W : scans_) fresh_W.insert(fresh_W.end(), scan_W.begin(), scan_W.end());
-  sight_ = sight_of(input.time, input.T_W_C.translation(), fresh_W, config_.sights);
-  constexpr std::size_t kParts = 3;  // what has left is gone within so many scans
-  for (const Vector3d& p_W : surface_.carve(sight_, config_.sights, kParts)) map_.forget(p_W);
+  for (const auto& scan_W : scans_)
+    std::ranges::copy_if(scan_W, std::back_inserter(fresh_W),
+                         [&](const Vector3f& p_W) { return whole || near_view.contains(p_W.cast<double>()); });
+  sight_ = sight_of(input.time, view.apex_W, fresh_W, config_.sights);
+  const RecentSurface::Parts parts{.view = 2, .rest = whole ? 4u : 0u};
+  for (const Vector3d& p_W : surface_.carve(sight_, config_.sights, view, parts)) map_.forget(p_W);
 }
 
 /// By the motion since the image before.
@@ -181,7 +201,7 @@ SurfacePoints Thermography::surface_in_view(const ThermographyInput& input) {
     if (!plane || std::abs(plane->distance_m(p_W)) > config_.surface.voxel_m) return Vector3f::Zero();
     return plane->normal_W().cast<float>();
   };
-  return surface_.points(view_cone(input.T_W_C, camera_, config_.sampling.max_range_m), normal_at);
+  return surface_.points(view_frustum(input.T_W_C, camera_, config_.sampling.max_range_m), normal_at);
 }
 
 void Thermography::keep_crops(const ThermographyInput& input) {
@@ -196,8 +216,8 @@ void Thermography::keep_crops(const ThermographyInput& input) {
 /// Finds the curve from this image's intensities to the map's; false where the image must not be used.
 bool Thermography::tie_to_map(const std::vector<SurfaceObservation>& observations, ThermographyFrame& frame) {
   using Use = ThermographyFrame::Use;
-  constexpr std::size_t kPairs = 4000;  // more add nothing but time: neighbours say the same
-  const std::vector<AnchorPair> pairs = evenly(anchor_pairs(map_, observations, camera_), kPairs);
+  constexpr std::size_t kEnough = 5000;  // more add nothing but time: neighbours say the same
+  const std::vector<AnchorPair> pairs = anchor_pairs(map_, evenly(observations, kEnough), camera_);
   frame.anchor = anchor_curve(pairs, anchor_, config_.anchor);
   if (frame.anchor.holds) {
     anchor_ = frame.anchor.curve;
