@@ -116,14 +116,14 @@ class BoxThatCame {
     for (int image = 0; image < 20; ++image) see(0.1 * image, 0.05 * image, 0);
   }
 
-  void see(double seconds, double viewpoint_m, int columns) {
+  void see(double seconds, double viewpoint_m, int columns, int first = 0) {
     ThermalView view{.time = at(seconds), .viewpoint_W = Vector3d(0.0, viewpoint_m, 0.0)};
     const auto show = [&](double x, double y, double z, float grey) {
       view.observations.push_back({.p_W = Vector3d(x, y, z), .pixel_px = {0.0F, 0.0F}, .intensity = grey, .raw = grey});
     };
     for (double z = -0.35; z <= 0.351; z += 0.05) {
       for (double y = 1.0; y <= 1.501; y += 0.05) show(4.0, y, z, 80.0F);
-      for (int column = 0; column < columns; ++column) show(2.0, 0.05 * column - 0.35, z, 200.0F);
+      for (int column = first; column < first + columns; ++column) show(2.0, 0.05 * column - 0.35, z, 200.0F);
     }
     const auto seen = map_.integrate(view);
     const Sight sight = sight_of(view.time, Vector3d::Zero(), points(seconds >= 20.0), past_.config());
@@ -151,6 +151,18 @@ TEST(Anomalies, AreWhatWasOnlyGlimpsedWhenItCame) {
   for (int image = 0; image < 60; ++image) box.see(22.0 + 0.5 * image, 0.0, 0);
   for (int image = 0; image < 4; ++image) box.see(53.0 + 0.1 * image, 0.3, box.kColumns);
   EXPECT_TRUE(box.is_told());
+}
+
+TEST(Anomalies, AreNotWhoWalksOnHiddenFromWhereHeWas) {
+  AnomalyConfig config;
+  config.watch.surround_deg = 35.0;
+  BoxThatCame stands(config), walks(config);
+  for (int image = 0; image < 10; ++image) {
+    stands.see(21.0 + 0.1 * image, 0.1 * image, 9);
+    walks.see(21.0 + 0.1 * image, 0.1 * image, 9, 3 * image / 2);
+    EXPECT_FALSE(walks.is_told());
+  }
+  EXPECT_TRUE(stands.is_told());
 }
 
 TEST(Anomalies, AreWhatComesIntoSightLittleByLittleIfAllOfItIsFoundToHaveCome) {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "pllit/geometry/voxel_neighbours.hpp"
+#include "pllit/map/anomaly_members.hpp"
 #include "pllit/map/even_centroid.hpp"
 #include "pllit/map/outshining.hpp"
 
@@ -21,36 +22,6 @@ Eigen::Vector3i cell_of(const WatchedVoxel& watched, double size_m) {
 double distance_m(const Anomaly& anomaly, const Vector3d& p_W) {
   return ((p_W - anomaly.position_W).cwiseAbs() - 0.5 * anomaly.extent_m).cwiseMax(0.0).norm();
 }
-
-/// Sums over the voxels of one anomaly.
-struct Members {
-  int all = 0, left = 0, hot = 0, known = 0, new_surfaces = 0, lasting = 0;
-  bool seen_hot_now = false;
-  double change = 0.0, sigmas = 0.0, peak_change = 0.0, peak_sigmas = 0.0;
-  double own_change = 0.0, own_sigmas = 0.0;  ///< of those that are no mere parts
-  Eigen::AlignedBox3d box_W;
-
-  void add(const WatchedVoxel& watched, Time now, double dwell_s) {
-    ++all;
-    left += watched.vacated ? 1 : 0;
-    if (!watched.hot) return;
-    ++hot;
-    known += !watched.new_surface && !watched.joined ? 1 : 0;
-    new_surfaces += watched.new_surface && !watched.joined ? 1 : 0;
-    lasting += watched.dwell_s() >= dwell_s ? 1 : 0;
-    seen_hot_now = seen_hot_now || watched.last == now;
-    const double in_sigmas = watched.change / watched.sigma;
-    change += watched.change;
-    sigmas += in_sigmas;
-    if (!watched.joined) {
-      own_change += watched.change;
-      own_sigmas += in_sigmas;
-    }
-    peak_change = std::max(peak_change, static_cast<double>(watched.peak));
-    peak_sigmas = std::max(peak_sigmas, static_cast<double>(watched.peak / watched.sigma));
-    box_W.extend(watched.position_W);
-  }
-};
 
 /// How an anomaly stands: by those of its voxels that were seen when it was last looked at, if these are enough of it.
 /// The others may not have been seen since it cooled.
@@ -74,12 +45,6 @@ AnomalyState state_of(std::span<WatchedVoxel* const> parts) {
   const int judged = enough ? in_view : all - left, judged_hot = enough ? hot_in_view : hot;
   if (2 * left > all || 5 * judged_hot <= judged) return AnomalyState::gone;
   return 2 * judged_hot < judged ? AnomalyState::cooling : AnomalyState::confirmed;
-}
-
-Members members_of(std::span<WatchedVoxel* const> parts, Time now, double dwell_s) {
-  Members members;
-  for (const WatchedVoxel* part : parts) members.add(*part, now, dwell_s);
-  return members;
 }
 
 /// Where the hot voxels of an anomaly are.
@@ -258,7 +223,8 @@ void AnomalyDetector::settle(Track& track, const Parts& parts, Time now, const T
   }
   const Members members = members_of(parts, now, config_.dwell_s);
   const bool stays = members.left <= config_.max_leaving * members.all;
-  if (!stays || members.lasting < config_.min_voxels || !members.seen_hot_now) return;
+  if (!stays || walks(members, config_.least_still) || members.lasting < config_.min_voxels || !members.seen_hot_now)
+    return;
   const int seeds = members.known + members.new_surfaces;
   const VoxelModelConfig& model = map.config().model;
   if (members.own_change < model.min_change * seeds || members.own_sigmas < config_.min_sigmas * seeds) return;
