@@ -156,6 +156,7 @@ TEST(Anomalies, AreWhatWasOnlyGlimpsedWhenItCame) {
 TEST(Anomalies, AreNotWhoWalksOnHiddenFromWhereHeWas) {
   AnomalyConfig config;
   config.watch.surround_deg = 35.0;
+  config.least_still = 0.75;  // he is 45 cm wide and slow
   BoxThatCame stands(config), walks(config);
   for (int image = 0; image < 10; ++image) {
     stands.see(21.0 + 0.1 * image, 0.1 * image, 9);

@@ -31,7 +31,7 @@ struct AnomalyConfig {
   int enough_seeds = 8;        ///< so many voxels that are judged by themselves vouch for any number of others
   double place_cell_m = 0.15;  ///< its position is the mean over cells of this size, whatever they hold
   double max_leaving = 0.3;    ///< clusters of which a greater share has left their place are moving: people, vehicles
-  double least_still = 0.75;   ///< ... and so is what came, if a smaller share of where it was is still seen hot
+  double least_still = 0.6;    ///< ... and so is what came, if a smaller share of where it was is still seen hot
   double registration_m = 0.02;   ///< how well images and surfaces lie on each other, one sigma
   double forget_fresh_s = 120.0;  ///< what was never confirmed is dropped when not seen for so long
 };
