@@ -2,6 +2,7 @@
 // what an image shows or what is around a voxel.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -89,7 +90,6 @@ class VoxelBlocks {
 
   /// Empty ones among them.
   std::vector<Block>& blocks() { return blocks_; }
-  const std::vector<Block>& blocks() const { return blocks_; }
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const Block& block : blocks_) block.for_each(visit);

@@ -1,7 +1,6 @@
 #include "pllit/map/image_sampling.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdint>

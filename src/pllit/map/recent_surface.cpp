@@ -51,9 +51,8 @@ std::vector<Vector3d> RecentSurface::carve(const Sight& sight, const SightConfig
   ++carvings_;
   for (std::size_t i = 0; i < cells_.blocks().size(); ++i) {
     Blocks::Block& block = cells_.blocks()[i];
-    const bool view_is_due = parts.view > 0 && (i + carvings_) % parts.view == 0,
-               rest_is_due = parts.rest > 0 && (i + carvings_) % parts.rest == 0;
-    if (view_is_due == rest_is_due ? view_is_due : may_show(view, block) == view_is_due) block.for_each(carve_cell);
+    const std::size_t in = may_show(view, block) ? parts.view : parts.rest;
+    if (in > 0 && (i + carvings_) % in == 0) block.for_each(carve_cell);
   }
   return places_W;
 }
