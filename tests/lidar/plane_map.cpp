@@ -105,6 +105,11 @@ TEST(PlaneMap, SeesNoPlaneInACloudOrALineOrTooFewPoints) {
   EXPECT_FALSE(map.plane_at({20.0, 0.0, 0.0}));
   EXPECT_FALSE(map.plane_at({30.0, 0.0, 0.0}));
   EXPECT_FALSE(map.plane_at({40.0, 0.0, 0.0}));
+  // Points that make no plane are known all the same.
+  EXPECT_TRUE(map.knows({10.0, 0.0, 0.0}));
+  EXPECT_TRUE(map.knows({20.0, 0.0, 0.0}));
+  EXPECT_FALSE(map.knows({30.0, 0.0, 0.0}));
+  EXPECT_FALSE(map.knows({40.0, 0.0, 0.0}));
 }
 
 TEST(PlaneMap, DropsWhatIsFarAndKeepsWhatIsNear) {

@@ -13,33 +13,59 @@ const Eigen::Matrix3Xd kNone(3, 0);
 
 TEST(MapDrift, GrowsOnlyWithNewPartsOfTheMap) {
   test::Random random(61);
-  const Estimate estimate{.mean = random.state(), .covariance = random.covariance(0.01)};
   MapDrift drift({});
-  drift.add_scan(estimate, 0.0, kNone);
-  EXPECT_EQ(drift.covariance_W().norm(), 0.0);
-  drift.add_scan(estimate, 0.2, kNone);
-  const Matrix6 once = drift.covariance_W();
-  drift.add_scan(estimate, 0.2, kNone);
-  EXPECT_LT((drift.covariance_W() - 2.0 * once).norm(), 1e-12);
+  drift.place({.mean = random.state(), .covariance = random.covariance(0.01)}, kNone, false);
+  drift.add_scan(0.0);
+  EXPECT_EQ(drift.doubt().drift.norm(), 0.0);
+  drift.add_scan(0.2);
+  const Matrix6 once = drift.doubt().drift;
+  drift.add_scan(0.2);
+  EXPECT_LT((drift.doubt().drift - 2.0 * once).norm(), 1e-12);
 }
 
 TEST(MapDrift, TurnsAnErrorInHeadingIntoOneInPosition) {
   MapDrift drift({.gain = 1.0, .shift_m = 0.0, .turn_rad = 0.0});
   Estimate estimate;
   estimate.covariance(2, 2) = 1e-4;  // 0.01 rad about the vertical
-  drift.add_scan(estimate, 1.0, kNone);
+  drift.place(estimate, kNone, false);
+  drift.add_scan(1.0);
   drift.move_to({10.0, 0.0, 0.0});
-  EXPECT_NEAR(std::sqrt(drift.covariance_W()(4, 4)), 0.1, 1e-9);  // across the way, not along it
-  EXPECT_NEAR(drift.covariance_W()(3, 3), 0.0, 1e-12);
+  EXPECT_NEAR(std::sqrt(drift.doubt().drift(4, 4)), 0.1, 1e-9);  // across the way, not along it
+  EXPECT_NEAR(drift.doubt().drift(3, 3), 0.0, 1e-12);
 }
 
-TEST(MapDrift, LeavesToTheFilterWhatWasNotPlacedAgainstTheMap) {
-  MapDrift drift({});
+Estimate with_shift_variances(const Vector3d& variances_m2) {
   Estimate estimate;
-  estimate.covariance.block<3, 3>(3, 3) = Vector3d(4.0, 1e-4, 1e-4).asDiagonal();
-  drift.add_scan(estimate, 1.0, Eigen::Matrix3Xd(Vector3d::UnitX()));
-  EXPECT_EQ(drift.covariance_W()(3, 3), 0.0);
-  EXPECT_NEAR(drift.covariance_W()(4, 4), 1e-4, 1e-12);
+  estimate.covariance.block<3, 3>(3, 3) = variances_m2.asDiagonal();
+  return estimate;
+}
+
+TEST(MapDrift, CountsWhatWasNotPlacedAgainstTheMapFromWhereItWasPlacedLast) {
+  MapDrift drift({.imu_factor = 1.5});
+  const Eigen::Matrix3Xd along_x = Vector3d::UnitX();
+  drift.place(with_shift_variances({1.0, 1e-4, 1e-4}), along_x, false);
+  drift.add_scan(1.0);
+  const PoseDoubt early = drift.doubt();
+  drift.place(with_shift_variances({4.0, 1e-4, 1e-4}), along_x, false);
+  EXPECT_NEAR(drift.doubt().total()(3, 3), 1.5 * 1.5 * 4.0, 1e-9);
+  EXPECT_NEAR(relative_covariance(early, drift.doubt(), Vector3d::Zero())(3, 3), 1.5 * 1.5 * 3.0, 1e-9);
+  EXPECT_NEAR(drift.doubt().total()(4, 4), 2e-4, 1e-9);
+}
+
+TEST(MapDrift, BelievesAnImageThatLeadsWhereNoScanDoes) {
+  MapDrift drift({.imu_factor = 1.5});
+  drift.place(with_shift_variances({4.0, 1e-4, 1e-4}), Vector3d::UnitX(), true);
+  EXPECT_NEAR(drift.doubt().total()(3, 3), 4.0, 1e-9);
+}
+
+TEST(MapDrift, KeepsWhatWasReckonedOnceScansPlaceItAgain) {
+  MapDrift drift({.imu_factor = 1.0});
+  drift.place(with_shift_variances({4.0, 1e-4, 1e-4}), Vector3d::UnitX(), false);
+  for (const double falling_m2 : {1.0, 0.1, 1e-4}) {
+    drift.place(with_shift_variances({falling_m2, 1e-4, 1e-4}), kNone, false);
+    EXPECT_NEAR(drift.doubt().total()(3, 3), 4.0, 1e-9);
+  }
+  EXPECT_LT(drift.doubt().match(3, 3) + drift.doubt().reckoned(0, 0), 1e-3);
 }
 
 TEST(Carried, MatchesWhatARotationDoesToADistantPoint) {

@@ -29,6 +29,15 @@ Eigen::Vector3i corner_at(const Vector3d& p_W, double voxel_m) {
   return voxel_of(Vector3d(p_W / voxel_m - Vector3d::Constant(0.5)), 1.0);
 }
 
+/// Calls use(cell, step) for the filled ones of the 2 x 2 x 2 voxels from `corner`, `step` counted from there.
+template <typename Use>
+void for_window(const VoxelTable<PlaneMap::Cell>& cells, const Eigen::Vector3i& corner, const Use& use) {
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3i step(i & 1, i >> 1 & 1, i >> 2);
+    if (const PlaneMap::Cell* cell = cells.find(voxel_key(corner + step))) use(*cell, step);
+  }
+}
+
 }  // namespace
 
 double PlanePatch::height_variance_m2(const Vector3d& p_W) const {
@@ -102,13 +111,21 @@ std::optional<PlanePatch> PlaneMap::plane_at(const Vector3d& p_W) const {
   return std::nullopt;
 }
 
+bool PlaneMap::knows(const Vector3d& p_W) const {
+  for (const Level& level : levels_) {
+    double points = 0.0;
+    for_window(level.cells, corner_at(p_W, level.voxel_m),
+               [&](const Cell& cell, const Eigen::Vector3i&) { points += cell.points; });
+    if (points >= config_.min_points) return true;
+  }
+  return false;
+}
+
 std::optional<PlanePatch> PlaneMap::fit(const Level& level, const Eigen::Vector3i& corner) const {
   Moments moments;
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3i step(i & 1, i >> 1 & 1, i >> 2);
-    if (const Cell* cell = level.cells.find(voxel_key(corner + step)))
-      moments.add(*cell, level.voxel_m * (step.cast<double>() - Vector3d::Constant(0.5)));
-  }
+  for_window(level.cells, corner, [&](const Cell& cell, const Eigen::Vector3i& step) {
+    moments.add(cell, level.voxel_m * (step.cast<double>() - Vector3d::Constant(0.5)));
+  });
   if (moments.points < config_.min_points) return std::nullopt;
   const Vector3d mean = moments.sum / moments.points;
   const Matrix3d covariance = moments.products / moments.points - mean * mean.transpose();

@@ -56,6 +56,8 @@ class PlaneMap {
   Window window_at(const Vector3d& p_W) const;
   /// The plane around a point, from the fine grid or else the coarse one; nothing where there is none.
   std::optional<PlanePatch> plane_at(const Vector3d& p_W) const;
+  /// Whether as many points as make a plane lie around p_W, on either grid, flat or not.
+  bool knows(const Vector3d& p_W) const;
 
   std::size_t bytes() const;
   std::size_t voxels() const { return levels_[0].cells.size(); }

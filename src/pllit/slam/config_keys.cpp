@@ -110,6 +110,8 @@ void list(Section section, DriftConfig& config) {
               {0.0, 1.0});
   section.add(PLLIT_KEY(turn_rad), "Drift in attitude that no scan knows of itself, one sigma.", "rad/sqrt(m)",
               {0.0, 1.0});
+  section.add(PLLIT_KEY(imu_factor), "So many times noisier than promised an IMU may be that leads alone.", "",
+              {1.0, 10.0});
 }
 
 void list(Section section, HealthConfig& config) {

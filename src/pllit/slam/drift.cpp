@@ -1,6 +1,30 @@
 #include "pllit/slam/drift.hpp"
 
+#include <Eigen/Eigenvalues>
+
 namespace pllit {
+namespace {
+
+/// The nearest covariance: what would be negative along some direction is nothing.
+Matrix3d positive_part(const Matrix3d& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(symmetric);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+}  // namespace
+
+Matrix6 PoseDoubt::total() const {
+  Matrix6 sum = match + drift;
+  sum.bottomRightCorner<3, 3>() += reckoned;
+  return sum;
+}
+
+Matrix6 relative_covariance(const PoseDoubt& a, const PoseDoubt& b, const Vector3d& displacement_W) {
+  Matrix6 sum = b.drift - carried(a.drift, displacement_W) + b.match + carried(a.match, displacement_W);
+  // What was reckoned before a is common to both.
+  sum.bottomRightCorner<3, 3>() += positive_part(b.reckoned - a.reckoned);
+  return sum;
+}
 
 Matrix6 carried(const Matrix6& covariance_W, const Vector3d& displacement_W) {
   Matrix6 F = Matrix6::Identity();
@@ -15,19 +39,34 @@ Matrix6 pose_covariance_W(const Estimate& estimate) {
 }
 
 void MapDrift::move_to(const Vector3d& p_W) {
-  covariance_W_ = carried(covariance_W_, p_W - p_W_);
+  doubt_.drift = carried(doubt_.drift, p_W - p_W_);
   const double way_m = (p_W - p_W_).norm();
-  covariance_W_.diagonal().head<3>().array() += config_.turn_rad * config_.turn_rad * way_m;
-  covariance_W_.diagonal().tail<3>().array() += config_.shift_m * config_.shift_m * way_m;
+  doubt_.drift.diagonal().head<3>().array() += config_.turn_rad * config_.turn_rad * way_m;
+  doubt_.drift.diagonal().tail<3>().array() += config_.shift_m * config_.shift_m * way_m;
   p_W_ = p_W;
 }
 
-void MapDrift::add_scan(const Estimate& posterior, double new_share, const Eigen::Matrix3Xd& unobserved) {
+void MapDrift::place(const Estimate& posterior, const Eigen::Matrix3Xd& unobserved, bool image_holds) {
+  const Matrix6 P = pose_covariance_W(posterior);
+  const Matrix3d shift = P.bottomRightCorner<3, 3>(), reckoned = unobserved * unobserved.transpose(),
+                 placed = Matrix3d::Identity() - reckoned;
   Matrix6 observed = Matrix6::Identity();
-  observed.bottomRightCorner<3, 3>() -= unobserved * unobserved.transpose();
-  covariance_W_ += config_.gain * new_share * new_share * observed * pose_covariance_W(posterior) * observed;
+  observed.bottomRightCorner<3, 3>() = placed;
+  doubt_.match = observed * P * observed;
+
+  const Matrix3d inherited = positive_part(placed * (not_inherited_ - shift) * placed);
+  doubt_.drift.bottomRightCorner<3, 3>() += inherited;
+  const double factor = image_holds ? 1.0 : config_.imu_factor;
+  doubt_.reckoned = factor * factor * reckoned * shift * reckoned;
+  not_inherited_ = doubt_.reckoned + positive_part(placed * not_inherited_ * placed - inherited);
 }
 
-void MapDrift::restart(const Estimate& estimate) { covariance_W_ += pose_covariance_W(estimate); }
+void MapDrift::add_scan(double new_share) { doubt_.drift += config_.gain * new_share * new_share * doubt_.match; }
+
+void MapDrift::restart(const Estimate& estimate) {
+  doubt_.drift += pose_covariance_W(estimate);
+  doubt_.match.setZero();
+  doubt_.reckoned = not_inherited_ = Matrix3d::Zero();
+}
 
 }  // namespace pllit

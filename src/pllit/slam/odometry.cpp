@@ -26,6 +26,15 @@ Eigen::Matrix3Xd unobserved_shifts(const DegenerateDirections& unobserved) {
   return shifts;
 }
 
+/// The share of a scan's points that lie where the map has too few to match anything to.
+double new_share(const PointCloud& scan, const SE3& T_W_I, const PlaneMap& map) {
+  constexpr std::size_t stride = 4;
+  std::size_t looked = 0, fresh = 0;
+  for (std::size_t i = 0; i < scan.points_I.size(); i += stride, ++looked)
+    fresh += map.knows(T_W_I.act(scan.points_I[i].cast<double>())) ? 0 : 1;
+  return looked > 0 ? static_cast<double>(fresh) / static_cast<double>(looked) : 0.0;
+}
+
 /// Whether an image knows the pose, its keyframes taken as known, along every direction that the scan does not observe.
 bool image_holds(const Matrix6& information, const DegenerateDirections& unobserved, const SO3& R_W_I) {
   constexpr double shift_sigma_m = 0.05, turn_sigma_rad = 0.003, counts = 0.3;
@@ -120,6 +129,8 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     vision_->learn(arena_);
   }
   facts.image.holds = to_seconds(packet.end - last_held_) < config_.health.silent_degraded_s;
+  drift_.move_to(estimate_.mean.p_W);
+  drift_.place(estimate_, unobserved_shifts(unobserved_), facts.image.holds);
   if (packet.scan) {
     extend_map(dense, T_W_scan, facts);
     clock.charge(Stage::map);
@@ -130,7 +141,7 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
   facts.allowed_imu_gap_s = to_seconds(config_.gaps.max_gap);
   frame.health = assess(facts, config_.health);
   frame.posterior = estimate_;
-  frame.drift_covariance = drift_.covariance_W();
+  frame.doubt = drift_.doubt();
   frame.stage_ms = clock.times_ms();
   return frame;
 }
@@ -181,10 +192,7 @@ void Odometry::extend_map(const PointCloud& points, const SE3& T_W_I, FrameFacts
   }
   if (unmatched_ > 0) return;  // a pose that does not fit the map must not enter it
   last_match_ = estimate_.mean.time;
-  drift_.move_to(estimate_.mean.p_W);
-  if (facts.matched)
-    drift_.add_scan(estimate_, 1.0 - static_cast<double>(facts.candidates) / facts.points,
-                    facts.image.holds ? unobserved_shifts(unobserved_) : Eigen::Matrix3Xd(3, 0));
+  if (facts.matched) drift_.add_scan(new_share(points, T_W_I, map_));
   map_.insert(points, T_W_I);
   mapped_points_ += points.points_I.size();
   map_.slide(estimate_.mean.p_W);
@@ -272,9 +280,7 @@ std::vector<Vector3f> FrameEstimate::points_W() const {
 }
 
 Matrix6 relative_pose_covariance(const FrameEstimate& a, const FrameEstimate& b) {
-  const Vector3d displacement_W = b.posterior.mean.p_W - a.posterior.mean.p_W;
-  return b.drift_covariance - carried(a.drift_covariance, displacement_W) + pose_covariance_W(b.posterior) +
-         carried(pose_covariance_W(a.posterior), displacement_W);
+  return relative_covariance(a.doubt, b.doubt, b.posterior.mean.p_W - a.posterior.mean.p_W);
 }
 
 }  // namespace pllit

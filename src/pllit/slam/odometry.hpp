@@ -23,8 +23,8 @@ struct RefinedMount {
 
 /// The estimate at the end of one packet, and what led to it.
 struct FrameEstimate {
-  Estimate posterior;        ///< its covariance holds against the map around the robot
-  Matrix6 drift_covariance;  ///< of that map against the origin, (theta, p) in W
+  Estimate posterior;  ///< its covariance holds against the map around the robot
+  PoseDoubt doubt;     ///< what of the pose is known against that map, and of the map against the origin
   Health health;
   FrameFacts facts;
   PointCloud cloud;                                  ///< the scan's points in I, de-skewed; empty without a scan
@@ -36,7 +36,7 @@ struct FrameEstimate {
   /// The cloud's points in W.
   std::vector<Vector3f> points_W() const;
   /// Covariance of (theta, p) in W against the origin.
-  Matrix6 pose_covariance() const { return drift_covariance + pose_covariance_W(posterior); }
+  Matrix6 pose_covariance() const { return doubt.total(); }
 };
 
 class Odometry {

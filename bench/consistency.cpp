@@ -1,0 +1,120 @@
+// How large the errors of relative poses are against what the estimator says of them, over many seeds:
+// bench_consistency SEEDS CONFIG SIM_ADDRESS..., for example 30 hilti2022 "sim:room?rig=hilti2022&images=none".
+// A row an address: the root mean square of error over sigma of each axis of each 10 m of way (1 is right), turned
+// along that way, and the mean of their squared Mahalanobis distance (6 is right).
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+
+#include "pllit/sim/simulation.hpp"
+#include "pllit/slam/config_presets.hpp"
+#include "pllit/slam/run.hpp"
+
+namespace pllit {
+namespace {
+
+constexpr double kWay_m = 10.0;
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+struct Score {
+  int poses = 0;
+  Vector6 squares = Vector6::Zero();  ///< of error over sigma: roll, pitch, yaw; along, across, up
+  Vector6 errors = Vector6::Zero();   ///< squared errors, rad and m
+  double nees = 0.0;
+};
+
+/// The error of b seen from a, (theta, p) in W, p that of b's position.
+Vector6 error_W(const FrameEstimate& a, const FrameEstimate& b, const SE3& true_a, const SE3& true_b) {
+  const SE3 expected_b = a.posterior.mean.T_W_I() * (true_a.inverse() * true_b), T_W_I = b.posterior.mean.T_W_I();
+  Vector6 error;
+  error << log_so3(T_W_I.asSO3() * expected_b.asSO3().inverse()), T_W_I.translation() - expected_b.translation();
+  return error;
+}
+
+/// Turns W so that x points along the way from a to b.
+Matrix6 along_the_way(const FrameEstimate& a, const FrameEstimate& b) {
+  const Vector3d way_W = b.posterior.mean.p_W - a.posterior.mean.p_W;
+  const Matrix3d R = exp_so3({0.0, 0.0, -std::atan2(way_W.y(), way_W.x())}).rotation();
+  Matrix6 both = Matrix6::Zero();
+  both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
+  return both;
+}
+
+void add(Score& score, const FrameEstimate& a, const FrameEstimate& b, const SE3& true_a, const SE3& true_b) {
+  const Matrix6 turn = along_the_way(a, b);
+  const Vector6 error = turn * error_W(a, b, true_a, true_b);
+  const Matrix6 covariance = turn * relative_pose_covariance(a, b) * turn.transpose();
+  ++score.poses;
+  score.squares += error.cwiseAbs2().cwiseQuotient(covariance.diagonal());
+  score.errors += error.cwiseAbs2();
+  score.nees += error.dot(covariance.ldlt().solve(error));
+}
+
+Expected<void> score_run(const std::string& address, const Config& config, Score& score) {
+  auto simulation = open_simulation(address);
+  if (!simulation) return std::unexpected(simulation.error());
+  const Trajectory truth = simulation->truth();
+  std::optional<FrameEstimate> from;
+  double way_m = 0.0;
+  Vector3d last_W = Vector3d::Zero();
+  const auto take = [&](const FrameEstimate& frame) -> Expected<void> {
+    if (frame.health.state != HealthState::good && frame.health.state != HealthState::degraded) return {};
+    const Vector3d& p_W = frame.posterior.mean.p_W;
+    if (from) way_m += (p_W - last_W).norm();
+    last_W = p_W;
+    if (from && way_m < kWay_m) return {};
+    const auto pose_of = [&](const FrameEstimate& of) {
+      return *pose_at(truth, of.posterior.mean.time, std::chrono::milliseconds(50));
+    };
+    if (from) add(score, *from, frame, pose_of(*from), pose_of(frame));
+    from = frame;
+    from->cloud = {};
+    way_m = 0.0;
+    return {};
+  };
+  RunSummary summary;
+  const Rig rig = simulation->rig();
+  return run_odometry(*simulation, rig, config, {.sink = take}, summary);
+}
+
+int run(int seeds, const std::string& preset, const std::vector<std::string>& addresses) {
+  const auto config = find_config(preset);
+  if (!config) {
+    std::fprintf(stderr, "%s\n", config.error().message.c_str());
+    return 2;
+  }
+  std::printf(
+      "| simulated | poses | roll | pitch | yaw | along | across | up | mean NEES "
+      "|\n|---|---|---|---|---|---|---|---|---|\n");
+  for (const std::string& address : addresses) {
+    Score score;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      const auto done =
+          score_run(address + (address.contains('?') ? "&" : "?") + "seed=" + std::to_string(seed), *config, score);
+      if (!done) std::fprintf(stderr, "%s, seed %d: %s\n", address.c_str(), seed, done.error().message.c_str());
+    }
+    const Vector6 rms = (score.squares / std::max(1, score.poses)).cwiseSqrt();
+    std::printf("| %s | %d", address.c_str(), score.poses);
+    for (const double value : rms) std::printf(" | %.2f", value);
+    const Vector6 errors = (score.errors / std::max(1, score.poses)).cwiseSqrt();
+    std::printf(" | %.1f | %.3f, %.3f, %.3f | %.1f, %.1f, %.1f |\n", score.nees / std::max(1, score.poses),
+                kDegrees * errors[0], kDegrees * errors[1], kDegrees * errors[2], 1e3 * errors[3], 1e3 * errors[4],
+                1e3 * errors[5]);
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace pllit
+
+int main(int argc, char** argv) {
+  const int seeds = argc > 3 ? std::atoi(argv[1]) : 0;
+  if (seeds <= 0) {
+    std::fprintf(stderr, "usage: bench_consistency SEEDS CONFIG SIM_ADDRESS...\n");
+    return 2;
+  }
+  return pllit::run(seeds, argv[2], {argv + 3, argv + argc});
+}
