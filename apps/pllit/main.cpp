@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <string>
 #include <vector>
 
 #include "program.hpp"
@@ -45,13 +46,17 @@ void set_log_level(std::size_t verbose, bool quiet) {
   spdlog::set_level(quiet ? spdlog::level::err : verbose > 0 ? spdlog::level::debug : spdlog::level::info);
 }
 
+int wrong_usage(const std::string& message) {
+  spdlog::error("{}", message);
+  std::fputs("See: pllit --help\n", stderr);
+  return code(ExitCode::usage);
+}
+
 /// Help and version are results; every other outcome of parsing is wrong usage.
 int finish_parsing(const CLI::App& program, const CLI::ParseError& outcome, int argc, const char* const* argv) {
   if (outcome.get_exit_code() == 0) return program.exit(outcome);
   const std::string suggestion = suggestion_for(program, argc, argv);
-  spdlog::error("{}", suggestion.empty() ? outcome.what() : suggestion);
-  std::fputs("See: pllit --help\n", stderr);
-  return code(ExitCode::usage);
+  return wrong_usage(suggestion.empty() ? outcome.what() : suggestion);
 }
 
 int run(int argc, char** argv) {
@@ -67,6 +72,8 @@ int run(int argc, char** argv) {
                                    add_eval(program),   add_export(program),   add_compare(program),
                                    add_trends(program), add_config(program)};
   for (const Verb& verb : verbs) verb.command->fallthrough();  // -v and -q hold after the verb as well
+  if (const std::string complaint = complaint_about_empty(argc, argv); !complaint.empty())
+    return wrong_usage(complaint);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& outcome) {

@@ -44,6 +44,10 @@ ExitCode report(const Error& error);
 /// knows them all.
 std::string suggestion_for(const CLI::App& program, int argc, const char* const* argv);
 
+/// A line about the first argument or value of an option that is empty, which every verb would take for one that was
+/// not given; empty where there is none.
+std::string complaint_about_empty(int argc, const char* const* argv);
+
 struct Version {
   std::string_view number, commit;  ///< commit: empty where it was not known to the build
 };

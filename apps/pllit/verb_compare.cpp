@@ -178,7 +178,6 @@ std::string visit_text(const Json& visit) {
 }
 
 Expected<ExitCode> compare(const CompareOptions& options) {
-  if (options.regions && options.regions->empty()) return input_error("--regions: the name of the file is empty");
   const auto baseline = read_visit(options.baseline);
   if (!baseline) return std::unexpected(baseline.error());
   std::optional<RegionComparison> regions;

@@ -51,6 +51,13 @@ TEST_F(Program, SuggestsTheVerbOrOptionThatWasMeant) {
   EXPECT_THAT(run({"-v", "export", "--foramt=las"}).err, HasSubstr("did you mean '--format'?"));
 }
 
+TEST_F(Program, RefusesAnEmptyValueThatAShellVariableLeft) {
+  EXPECT_EQ(run({"run", "sim:box_room", "--config", ""}).exit_code, 2);
+  EXPECT_THAT(run({"run", "sim:box_room", "--config", ""}).err, HasSubstr("The value of --config is empty"));
+  EXPECT_THAT(run({"run", "sim:box_room", "--config="}).err, HasSubstr("--config has no value"));
+  EXPECT_THAT(run({"eval", "", "estimate.tum"}).err, HasSubstr("Argument 2 is empty"));
+}
+
 TEST_F(Program, TakesVerbosityBeforeAndAfterTheVerb) {
   EXPECT_EQ(run({"-q", "config", "--presets"}).exit_code, 0);
   EXPECT_EQ(run({"config", "--presets", "-v"}).exit_code, 0);

@@ -145,7 +145,7 @@ TEST_F(CompareVerb, RefusesBeforeItComparesWhatCannotBeRight) {
     return err;
   };
   EXPECT_THAT(refused({"--store", path("hall.sqlite")}), HasSubstr("--regions"));
-  EXPECT_THAT(refused({"--regions", ""}), HasSubstr("--regions: the name of the file is empty"));
+  EXPECT_THAT(refused({"--regions", ""}), HasSubstr("The value of --regions is empty"));
   EXPECT_THAT(refused({"--regions", path("none.yaml")}), HasSubstr("none.yaml: no such file"));
   EXPECT_THAT(refused({"--regions", write("bad.yaml", "regions:\n  - {tag: a, bxo_m: 3}\n")}),
               HasSubstr("did you mean 'box_m'?"));
