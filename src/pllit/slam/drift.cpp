@@ -5,6 +5,8 @@
 namespace pllit {
 namespace {
 
+constexpr double kAxis_rad = 0.005;  // an unobserved direction is found from planes: it leans a little into the others
+
 /// The nearest covariance: what would be negative along some direction is nothing.
 Matrix3d positive_part(const Matrix3d& symmetric) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(symmetric);
@@ -57,8 +59,9 @@ void MapDrift::place(const Estimate& posterior, const Eigen::Matrix3Xd& unobserv
   const Matrix3d inherited = positive_part(placed * (not_inherited_ - shift) * placed);
   doubt_.drift.bottomRightCorner<3, 3>() += inherited;
   const double factor = image_holds ? 1.0 : config_.imu_factor;
-  doubt_.reckoned = factor * factor * reckoned * shift * reckoned;
-  not_inherited_ = doubt_.reckoned + positive_part(placed * not_inherited_ * placed - inherited);
+  const Matrix3d along = factor * factor * reckoned * shift * reckoned;
+  doubt_.reckoned = along + kAxis_rad * kAxis_rad * along.trace() * placed;
+  not_inherited_ = along + positive_part(placed * not_inherited_ * placed - inherited);
 }
 
 void MapDrift::add_scan(double new_share) { doubt_.drift += config_.gain * new_share * new_share * doubt_.match; }
