@@ -107,8 +107,9 @@ int run(int seeds, const std::string& preset, const std::vector<std::string>& ad
     return 2;
   }
   std::printf(
-      "| simulated | poses | roll | pitch | yaw | along | across | up | mean NEES "
-      "|\n|---|---|---|---|---|---|---|---|---|\n");
+      "| simulated | poses | roll | pitch | yaw | along | across | up | mean NEES | worst seed: its mean | rms error: "
+      "roll, "
+      "pitch, yaw, deg | along, across, up, mm |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& address : addresses) {
     Score all, worst;
     int worst_seed = 0;
