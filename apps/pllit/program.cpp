@@ -55,7 +55,7 @@ std::string suggestion_for(const CLI::App& program, int argc, const char* const*
 std::string complaint_about_empty(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i], before = i > 1 ? argv[i - 1] : "";
-    if (word.starts_with("--") && word.ends_with('='))
+    if (word.starts_with("--") && word.find('=') + 1 == word.size())
       return std::format("{} has no value; was a shell variable not set?", word.substr(0, word.size() - 1));
     if (word.empty() && before.starts_with('-'))
       return std::format("The value of {} is empty; was a shell variable not set?", before);

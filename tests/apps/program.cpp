@@ -55,6 +55,7 @@ TEST_F(Program, RefusesAnEmptyValueThatAShellVariableLeft) {
   EXPECT_EQ(run({"run", "sim:box_room", "--config", ""}).exit_code, 2);
   EXPECT_THAT(run({"run", "sim:box_room", "--config", ""}).err, HasSubstr("The value of --config is empty"));
   EXPECT_THAT(run({"run", "sim:box_room", "--config="}).err, HasSubstr("--config has no value"));
+  EXPECT_EQ(run({"config", "--dump", "--set=advanced.report.severity="}).exit_code, 0);
   EXPECT_THAT(run({"eval", "", "estimate.tum"}).err, HasSubstr("Argument 2 is empty"));
 }
 
