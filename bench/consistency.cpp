@@ -62,11 +62,14 @@ void add(Score& score, const FrameEstimate& a, const FrameEstimate& b, const SE3
   score.nees += error.dot(covariance.ldlt().solve(error));
 }
 
-Expected<void> score_run(const std::string& address, const Config& config, Score& score) {
+/// The score of one run; an error where it fails, or where the truth does not reach.
+Expected<Score> score_of(const std::string& address, const Config& config) {
   auto simulation = open_simulation(address);
   if (!simulation) return std::unexpected(simulation.error());
   const Trajectory truth = simulation->truth();
+  Score score;
   std::optional<FrameEstimate> from;
+  SE3 true_from;
   double way_m = 0.0;
   Vector3d last_W = Vector3d::Zero();
   const auto take = [&](const FrameEstimate& frame) -> Expected<void> {
@@ -75,10 +78,10 @@ Expected<void> score_run(const std::string& address, const Config& config, Score
     if (from) way_m += (p_W - last_W).norm();
     last_W = p_W;
     if (from && way_m < kWay_m) return {};
-    const auto pose_of = [&](const FrameEstimate& of) {
-      return *pose_at(truth, of.posterior.mean.time, std::chrono::milliseconds(50));
-    };
-    if (from) add(score, *from, frame, pose_of(*from), pose_of(frame));
+    const auto true_pose = pose_at(truth, frame.posterior.mean.time, std::chrono::milliseconds(50));
+    if (!true_pose) return input_error("the truth has no pose at the time of a frame");
+    if (from) add(score, *from, frame, true_from, *true_pose);
+    true_from = *true_pose;
     from = frame;
     from->cloud = {};
     way_m = 0.0;
@@ -86,7 +89,9 @@ Expected<void> score_run(const std::string& address, const Config& config, Score
   };
   RunSummary summary;
   const Rig rig = simulation->rig();
-  return run_odometry(*simulation, rig, config, {.sink = take}, summary);
+  const auto done = run_odometry(*simulation, rig, config, {.sink = take}, summary);
+  if (!done) return std::unexpected(done.error());
+  return score;
 }
 
 void print_row(const std::string& address, const Score& score, int worst_seed, double worst_nees) {
@@ -107,22 +112,24 @@ int run(int seeds, const std::string& preset, const std::vector<std::string>& ad
     return 2;
   }
   std::printf(
-      "| simulated | poses | roll | pitch | yaw | along | across | up | mean NEES | worst seed: its mean | rms error: "
-      "roll, "
-      "pitch, yaw, deg | along, across, up, mm |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| simulated | poses | roll | pitch | yaw | along | across | up | mean NEES | worst seed: its mean "
+      "| rms error: roll, pitch, yaw, deg | along, across, up, mm "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& address : addresses) {
     Score all, worst;
     int worst_seed = 0;
     for (int seed = 1; seed <= seeds; ++seed) {
-      Score score;
-      const auto done =
-          score_run(address + (address.contains('?') ? "&" : "?") + "seed=" + std::to_string(seed), *config, score);
-      if (!done) std::fprintf(stderr, "%s, seed %d: %s\n", address.c_str(), seed, done.error().message.c_str());
-      if (score.mean_nees() > worst.mean_nees()) {
-        worst = score;
+      const auto score =
+          score_of(address + (address.contains('?') ? "&" : "?") + "seed=" + std::to_string(seed), *config);
+      if (!score) {
+        std::fprintf(stderr, "%s, seed %d: %s\n", address.c_str(), seed, score.error().message.c_str());
+        return 1;
+      }
+      if (score->mean_nees() > worst.mean_nees()) {
+        worst = *score;
         worst_seed = seed;
       }
-      all += score;
+      all += *score;
     }
     print_row(address, all, worst_seed, worst.mean_nees());
   }

@@ -47,8 +47,8 @@ class MapDrift {
  private:
   DriftConfig config_;
   PoseDoubt doubt_;
-  Matrix3d not_inherited_ =
-      Matrix3d::Zero();  ///< of what was reckoned, what placing again has not yet handed to the map
+  /// Of what was reckoned, what placing again has not yet handed to the map.
+  Matrix3d not_inherited_ = Matrix3d::Zero();
   Vector3d p_W_ = Vector3d::Zero();
 };
 
