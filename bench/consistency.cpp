@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "pllit/eval/rpe.hpp"
 #include "pllit/sim/simulation.hpp"
 #include "pllit/slam/config_presets.hpp"
 #include "pllit/slam/run.hpp"
@@ -35,14 +36,6 @@ struct Score {
   }
 };
 
-/// The error of b seen from a, (theta, p) in W, p that of b's position.
-Vector6 error_W(const FrameEstimate& a, const FrameEstimate& b, const SE3& true_a, const SE3& true_b) {
-  const SE3 expected_b = a.posterior.mean.T_W_I() * (true_a.inverse() * true_b), T_W_I = b.posterior.mean.T_W_I();
-  Vector6 error;
-  error << log_so3(T_W_I.asSO3() * expected_b.asSO3().inverse()), T_W_I.translation() - expected_b.translation();
-  return error;
-}
-
 /// Turns W so that x points along the way from a to b.
 Matrix6 along_the_way(const FrameEstimate& a, const FrameEstimate& b) {
   const Vector3d way_W = b.posterior.mean.p_W - a.posterior.mean.p_W;
@@ -52,9 +45,14 @@ Matrix6 along_the_way(const FrameEstimate& a, const FrameEstimate& b) {
   return both;
 }
 
+PosePair matched(const FrameEstimate& frame, const SE3& truth) {
+  const NavState& mean = frame.posterior.mean;
+  return {.time = mean.time, .T_W_I = truth, .T_V_I = mean.T_W_I()};
+}
+
 void add(Score& score, const FrameEstimate& a, const FrameEstimate& b, const SE3& true_a, const SE3& true_b) {
   const Matrix6 turn = along_the_way(a, b);
-  const Vector6 error = turn * error_W(a, b, true_a, true_b);
+  const Vector6 error = turn * motion_error_V(matched(a, true_a), matched(b, true_b));
   const Matrix6 covariance = turn * relative_pose_covariance(a, b) * turn.transpose();
   ++score.poses;
   score.squares += error.cwiseAbs2().cwiseQuotient(covariance.diagonal());

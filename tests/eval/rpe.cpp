@@ -98,6 +98,17 @@ TEST(RelativeError, EqualsItsNaiveTwinOnAPathThatStandsStillNowAndThen) {
   }
 }
 
+TEST(MotionError, IsThatOfTheLaterPoseInTheEstimatesWorldWhereverThatLies) {
+  const auto truth = wandering(2, 31);
+  const Vector6 pushed = (Vector6() << 0.02, -0.01, 0.03, 0.1, -0.2, 0.05).finished();  // (theta, p) in V
+  const SE3 T_V_W = pose_from(exp_so3({0.2, -0.1, 2.0}), {3.0, -2.0, 1.1});
+  const SE3 from = T_V_W * truth[0], exact = T_V_W * truth[1];
+  const SE3 to = pose_from(exp_so3(Vector3d(pushed.head<3>())) * exact.asSO3(), exact.translation() + pushed.tail<3>());
+  const Vector6 error =
+      motion_error_V({.time = {}, .T_W_I = truth[0], .T_V_I = from}, {.time = {}, .T_W_I = truth[1], .T_V_I = to});
+  EXPECT_LT((error - pushed).norm(), 1e-12);
+}
+
 TEST(RelativeError, HasNoPairsOverMoreThanThePathNorBetweenSparseSamples) {
   const auto truth = straight(11);
   EXPECT_EQ(relative_error(pairs_of(truth, truth), 12.0).pairs, 0u);

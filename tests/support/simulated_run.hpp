@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pllit/eval/rpe.hpp"
 #include "pllit/sim/simulation.hpp"
 #include "pllit/slam/run.hpp"
 
@@ -37,15 +38,13 @@ inline SimulatedRun run_simulation(const std::string& address, const Config& con
   return run;
 }
 
-/// The estimated motion between two frames against the true one, as (theta, p) in W about the first frame's position.
+/// The estimated motion between two frames against the true one, (theta, p) in W.
 inline Vector6 relative_error_W(const SimulatedRun& run, const FrameEstimate& a, const FrameEstimate& b) {
-  const SE3 estimated = a.posterior.mean.T_W_I().inverse() * b.posterior.mean.T_W_I();
-  const SE3 truth = run.truth_at(a).inverse() * run.truth_at(b);
-  const Matrix3d R_W_a = a.posterior.mean.R_W_I.rotation();
-  Vector6 error;
-  error << R_W_a * log_so3(estimated.asSO3() * truth.asSO3().inverse()),
-      R_W_a * (estimated.translation() - truth.translation());
-  return error;
+  const auto matched = [&run](const FrameEstimate& frame) {
+    const NavState& mean = frame.posterior.mean;
+    return PosePair{.time = mean.time, .T_W_I = run.truth_at(frame), .T_V_I = mean.T_W_I()};
+  };
+  return motion_error_V(matched(a), matched(b));
 }
 
 }  // namespace pllit::test

@@ -36,6 +36,13 @@ std::optional<std::size_t> partner_of(const std::vector<double>& distances_m, st
 
 }  // namespace
 
+Vector6 motion_error_V(const PosePair& from, const PosePair& to) {
+  const SE3 expected = from.T_V_I * (from.T_W_I.inverse() * to.T_W_I);
+  Vector6 error;
+  error << log_so3(to.T_V_I.asSO3() * expected.asSO3().inverse()), to.T_V_I.translation() - expected.translation();
+  return error;
+}
+
 RelativeError relative_error(std::span<const PosePair> pairs, double delta_m) {
   const std::vector<double> distances_m = distances_of(pairs);
   RelativeError error{.delta_m = delta_m};

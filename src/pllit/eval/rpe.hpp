@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pllit/eval/associate.hpp"
+#include "pllit/state/nav_state.hpp"
 
 namespace pllit {
 
@@ -26,6 +27,10 @@ struct RelativeError {
   double rotation_deg = 0.0;  ///< root mean square of E's whole angle
   std::vector<RelativeSample> samples{};
 };
+
+/// The estimated motion between two matched poses against the true one, (theta, p) in V, p of the later position: what
+/// the covariance of their relative pose (`relative_pose_covariance`) is about.
+Vector6 motion_error_V(const PosePair& from, const PosePair& to);
 
 /// Alignment of the pairs makes no difference.
 RelativeError relative_error(std::span<const PosePair> pairs, double delta_m);
