@@ -46,7 +46,7 @@ TEST(Corners, AreToldFromNoiseByTheImagesOwnNoise) {
     EXPECT_NEAR(noise_grey(image), noise, 0.35 * noise + 0.2);
     const CornerConfig config;
     const cv::Mat noise_alone = test::seen(cv::Mat(256, 320, CV_32FC1, cv::Scalar(120)), noise, 10);
-    EXPECT_LT(corners_of(contrast_normalised(noise_alone, config), config).size(), 5U) << noise;
+    EXPECT_LT(corners_of(noise_alone, config).size(), 5U) << noise;
   }
 }
 
@@ -55,15 +55,25 @@ TEST(Corners, LieAtTheCornersOfASquare) {
   cv::rectangle(image, {50, 40, 60, 40}, cv::Scalar(180), cv::FILLED);  // edges at 49.5, 109.5, 39.5, 79.5
   cv::GaussianBlur(image, image, {}, 0.8);
   const CornerConfig config;
-  const auto corners = corners_of(contrast_normalised(test::seen(image, 0.0, 1), config), config);
+  const auto corners = corners_of(test::seen(image, 0.0, 1), config);
   ASSERT_GE(corners.size(), 4U);
   for (const Vector2f& truth :
        {Vector2f(49.5, 39.5), Vector2f(109.5, 39.5), Vector2f(49.5, 79.5), Vector2f(109.5, 79.5)}) {
     float nearest = 1e9F;
     for (const Corner& corner : corners) nearest = std::min(nearest, (corner.at_px - truth).norm());
-    // The window of gradients pulls the maximum inside the corner, alike in all images of it.
-    EXPECT_LT(nearest, 2.5F);
+    // Blur and the window of gradients pull the maximum inside the corner, alike in all images of it.
+    EXPECT_LT(nearest, 3.5F);
   }
+}
+
+TEST(Corners, ComeBackInSoftNoisyImages) {
+  cv::Mat soft = test::scene({.blocks = 60}, 21);
+  cv::GaussianBlur(soft, soft, {}, 2.0);  // as wide as edges are in thermal images
+  ClassicalExtractor extractor({.most_points = 200});
+  const auto first = extractor.extract(test::seen(soft, 2.0, 1)), second = extractor.extract(test::seen(soft, 2.0, 2));
+  ASSERT_TRUE(first && second);
+  EXPECT_GT(first->points_px.size(), 80U);
+  EXPECT_GT(repeated_share(*first, *second), 0.9);
 }
 
 TEST(Corners, AreSpreadAsFarApartAsTheirNumberAllows) {

@@ -16,11 +16,11 @@ Expected<Features> ClassicalExtractor::extract(const cv::Mat& grey) {
                     kLeast_px, grey.cols, grey.rows, grey.type()));
   // Lines take about as long as points.
   auto lines = std::async(std::launch::async, [&] { return line_segments(grey, config_.lines); });
-  std::vector<Corner> corners = corners_of(contrast_normalised(grey, config_.corners), config_.corners);
+  std::vector<Corner> corners = corners_of(grey, config_.corners);
   if (std::ssize(corners) < config_.most_points / 3) {  // dim or bare: faint corners are better than none
     CornerConfig faint = config_.corners;
     faint.noise_floors *= 0.5;
-    corners = corners_of(contrast_normalised(grey, faint), faint);
+    corners = corners_of(grey, faint);
   }
   corners = spread_evenly(corners, config_.most_points, static_cast<float>(config_.most_radius_px));
   Features features;

@@ -70,6 +70,22 @@ std::vector<Corner> thinned(const std::vector<Corner>& corners, float radius, st
   return kept;
 }
 
+cv::Mat contrast_normalised(const cv::Mat& grey, const CornerConfig& config) {
+  cv::Mat image, mean, squares, spread;
+  grey.convertTo(image, CV_32F);
+  cv::GaussianBlur(image, image, {}, config.blur_px);
+  const auto floor = static_cast<float>(config.noise_floors * noise_grey(grey));
+  const cv::Size window(config.contrast_window_px, config.contrast_window_px);
+  cv::boxFilter(image, mean, CV_32F, window, {-1, -1}, true, cv::BORDER_REFLECT);
+  cv::sqrBoxFilter(image, squares, CV_32F, window, {-1, -1}, true, cv::BORDER_REFLECT);
+  for (int row = 0; row < image.rows; ++row) {
+    Eigen::Map<Eigen::ArrayXf> value(image.ptr<float>(row), image.cols);
+    const Eigen::Map<const Eigen::ArrayXf> m(mean.ptr<float>(row), image.cols), s(squares.ptr<float>(row), image.cols);
+    value = (value - m) / ((s - m * m).max(0.0F).sqrt() + floor);
+  }
+  return image;
+}
+
 }  // namespace
 
 double noise_grey(const cv::Mat& grey) {
@@ -89,25 +105,9 @@ double noise_grey(const cv::Mat& grey) {
   return std::max(*middle / (kMedian * kMask), kRounding);
 }
 
-cv::Mat contrast_normalised(const cv::Mat& grey, const CornerConfig& config) {
-  cv::Mat image, mean, squares, spread;
-  grey.convertTo(image, CV_32F);
-  cv::GaussianBlur(image, image, {}, config.blur_px);
-  const auto floor = static_cast<float>(config.noise_floors * noise_grey(grey));
-  const cv::Size window(config.contrast_window_px, config.contrast_window_px);
-  cv::boxFilter(image, mean, CV_32F, window, {-1, -1}, true, cv::BORDER_REFLECT);
-  cv::sqrBoxFilter(image, squares, CV_32F, window, {-1, -1}, true, cv::BORDER_REFLECT);
-  for (int row = 0; row < image.rows; ++row) {
-    Eigen::Map<Eigen::ArrayXf> value(image.ptr<float>(row), image.cols);
-    const Eigen::Map<const Eigen::ArrayXf> m(mean.ptr<float>(row), image.cols), s(squares.ptr<float>(row), image.cols);
-    value = (value - m) / ((s - m * m).max(0.0F).sqrt() + floor);
-  }
-  return image;
-}
-
-std::vector<Corner> corners_of(const cv::Mat& normalised, const CornerConfig& config) {
+std::vector<Corner> corners_of(const cv::Mat& grey, const CornerConfig& config) {
   cv::Mat strength, best;
-  cv::cornerMinEigenVal(normalised, strength, config.window_px);
+  cv::cornerMinEigenVal(contrast_normalised(grey, config), strength, config.window_px);
   cv::dilate(strength, best, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));
   const int margin = std::max(config.margin_px, 1);
   std::vector<Corner> corners;

@@ -84,7 +84,7 @@ MapView view_of(const Ort::Value& value) {
 }
 
 std::vector<Corner> corners_in(const cv::Mat& grey, const NetworkConfig& config) {
-  return spread_evenly(corners_of(contrast_normalised(grey, config.corners), config.corners), config.points.most,
+  return spread_evenly(corners_of(grey, config.corners), config.points.most,
                        static_cast<float>(config.points.most_radius_px));
 }
 
