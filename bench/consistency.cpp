@@ -1,7 +1,8 @@
 // How large the errors of relative poses are against what the estimator says of them, over many seeds:
-// bench_consistency SEEDS CONFIG SIM_ADDRESS..., for example 30 hilti2022 "sim:room?rig=hilti2022&images=none".
-// A row an address: the root mean square of error over sigma of each axis of each 10 m of way (1 is right), turned
-// along that way, and the mean of their squared Mahalanobis distance (6 is right), over all seeds and for the
+// bench_consistency [--way M] SEEDS CONFIG SIM_ADDRESS..., for example 30 hilti2022
+// "sim:room?rig=hilti2022&images=none".
+// A row an address: the root mean square of error over sigma of each axis of each 10 m (or M) of way (1 is right),
+// turned along that way, and the mean of their squared Mahalanobis distance (6 is right), over all seeds and for the
 // worst one.
 #include <cmath>
 #include <cstdio>
@@ -17,7 +18,6 @@
 namespace pllit {
 namespace {
 
-constexpr double kWay_m = 10.0;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct Score {
@@ -61,7 +61,7 @@ void add(Score& score, const FrameEstimate& a, const FrameEstimate& b, const SE3
 }
 
 /// The score of one run; an error where it fails, or where the truth does not reach.
-Expected<Score> score_of(const std::string& address, const Config& config) {
+Expected<Score> score_of(const std::string& address, const Config& config, double each_m) {
   auto simulation = open_simulation(address);
   if (!simulation) return std::unexpected(simulation.error());
   const Trajectory truth = simulation->truth();
@@ -75,7 +75,7 @@ Expected<Score> score_of(const std::string& address, const Config& config) {
     const Vector3d& p_W = frame.posterior.mean.p_W;
     if (from) way_m += (p_W - last_W).norm();
     last_W = p_W;
-    if (from && way_m < kWay_m) return {};
+    if (from && way_m < each_m) return {};
     const auto true_pose = pose_at(truth, frame.posterior.mean.time, std::chrono::milliseconds(50));
     if (!true_pose) return input_error("the truth has no pose at the time of a frame");
     if (from) add(score, *from, frame, true_from, *true_pose);
@@ -103,7 +103,7 @@ void print_row(const std::string& address, const Score& score, int worst_seed, d
   std::fflush(stdout);
 }
 
-int run(int seeds, const std::string& preset, const std::vector<std::string>& addresses) {
+int run(double each_m, int seeds, const std::string& preset, const std::vector<std::string>& addresses) {
   const auto config = find_config(preset);
   if (!config) {
     std::fprintf(stderr, "%s\n", config.error().message.c_str());
@@ -118,7 +118,7 @@ int run(int seeds, const std::string& preset, const std::vector<std::string>& ad
     int worst_seed = 0;
     for (int seed = 1; seed <= seeds; ++seed) {
       const auto score =
-          score_of(address + (address.contains('?') ? "&" : "?") + "seed=" + std::to_string(seed), *config);
+          score_of(address + (address.contains('?') ? "&" : "?") + "seed=" + std::to_string(seed), *config, each_m);
       if (!score) {
         std::fprintf(stderr, "%s, seed %d: %s\n", address.c_str(), seed, score.error().message.c_str());
         return 1;
@@ -138,10 +138,16 @@ int run(int seeds, const std::string& preset, const std::vector<std::string>& ad
 }  // namespace pllit
 
 int main(int argc, char** argv) {
-  const int seeds = argc > 3 ? std::atoi(argv[1]) : 0;
-  if (seeds <= 0) {
-    std::fprintf(stderr, "usage: bench_consistency SEEDS CONFIG SIM_ADDRESS...\n");
+  std::vector<std::string> words(argv + 1, argv + argc);
+  double each_m = 10.0;
+  if (words.size() > 2 && words.front() == "--way") {
+    each_m = std::atof(words[1].c_str());
+    words.erase(words.begin(), words.begin() + 2);
+  }
+  const int seeds = words.size() > 2 ? std::atoi(words.front().c_str()) : 0;
+  if (seeds <= 0 || each_m <= 0.0) {
+    std::fprintf(stderr, "usage: bench_consistency [--way M] SEEDS CONFIG SIM_ADDRESS...\n");
     return 2;
   }
-  return pllit::run(seeds, argv[2], {argv + 3, argv + argc});
+  return pllit::run(each_m, seeds, words[1], {words.begin() + 2, words.end()});
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <numbers>
 
 #include "support/random_states.hpp"
 
@@ -24,14 +25,38 @@ TEST(MapDrift, GrowsOnlyWithNewPartsOfTheMap) {
 }
 
 TEST(MapDrift, TurnsAnErrorInHeadingIntoOneInPosition) {
-  MapDrift drift({.gain = 1.0, .shift_m = 0.0, .turn_rad = 0.0});
+  MapDrift drift({.shift_m = 0.0, .turn_rad = 0.0, .scale_share = 0.0});
   Estimate estimate;
   estimate.covariance(2, 2) = 1e-4;  // 0.01 rad about the vertical
   drift.place(estimate, kNone, false);
   drift.add_scan(1.0);
-  drift.move_to({10.0, 0.0, 0.0});
+  drift.move_to(pose_from(SO3::Identity(), {10.0, 0.0, 0.0}));
   EXPECT_NEAR(std::sqrt(drift.doubt().drift(4, 4)), 0.1, 1e-9);  // across the way, not along it
   EXPECT_NEAR(drift.doubt().drift(3, 3), 0.0, 1e-12);
+}
+
+TEST(MapDrift, DoubtsTheScaleOfTheWholeWayAtOnce) {
+  MapDrift drift({.shift_m = 0.0, .turn_rad = 0.0, .scale_share = 1e-3});
+  drift.move_to(pose_from(SO3::Identity(), {50.0, 0.0, 0.0}));
+  const PoseDoubt halfway = drift.doubt();
+  drift.move_to(pose_from(SO3::Identity(), {100.0, 0.0, 0.0}));
+  EXPECT_NEAR(std::sqrt(drift.doubt().total()(3, 3)), 0.1, 1e-9);
+  EXPECT_NEAR(std::sqrt(relative_covariance(halfway, drift.doubt(), {50.0, 0.0, 0.0})(3, 3)), 0.05, 1e-9);
+}
+
+/// Sigma of the heading after a quarter turn on the way, each scan of which adds a share of new map.
+double heading_sigma_rad(double new_share) {
+  MapDrift drift({.shift_m = 0.0, .turn_rad = 0.0, .turn_share = 2e-3});
+  for (int i = 0; i <= 90; ++i) {
+    drift.move_to(pose_from(exp_so3({0.0, 0.0, i * std::numbers::pi / 180.0}), Vector3d::Zero()));
+    drift.add_scan(new_share);
+  }
+  return std::sqrt(drift.doubt().total()(2, 2));
+}
+
+TEST(MapDrift, DoubtsTurnsIntoTheUnknownAndNotThoseInAKnownPlace) {
+  EXPECT_NEAR(heading_sigma_rad(0.05), 2e-3 * 0.5 * std::numbers::pi, 1e-9);
+  EXPECT_EQ(heading_sigma_rad(0.0), 0.0);
 }
 
 Estimate with_shift_variances(const Vector3d& variances_m2) {

@@ -104,12 +104,16 @@ void list(Section section, ScanConfig& config) {
 }
 
 void list(Section section, DriftConfig& config) {
-  section.add(PLLIT_KEY(gain), "How much more than independent errors the match errors of following scans add up.", "",
+  section.add(PLLIT_KEY(gain), "Variance that a whole new map inherits from scans, as a multiple of their match's.", "",
               {0.0, 1000.0});
   section.add(PLLIT_KEY(shift_m), "Drift in position that no scan knows of itself, one sigma.", "m/sqrt(m)",
               {0.0, 1.0});
   section.add(PLLIT_KEY(turn_rad), "Drift in attitude that no scan knows of itself, one sigma.", "rad/sqrt(m)",
               {0.0, 1.0});
+  section.add(PLLIT_KEY(scale_share), "The LiDAR may measure longer or shorter by this share, one sigma.", "",
+              {0.0, 0.1});
+  section.add(PLLIT_KEY(turn_share), "It may show turns into the unknown wider or narrower by this share, one sigma.",
+              "", {0.0, 0.1});
   section.add(PLLIT_KEY(imu_factor), "So many times noisier than promised an IMU may be that leads alone.", "",
               {1.0, 10.0});
 }

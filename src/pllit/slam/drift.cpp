@@ -1,6 +1,8 @@
 #include "pllit/slam/drift.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numbers>
 
 namespace pllit {
 namespace {
@@ -18,6 +20,7 @@ Matrix3d positive_part(const Matrix3d& symmetric) {
 Matrix6 PoseDoubt::total() const {
   Matrix6 sum = match + drift;
   sum.bottomRightCorner<3, 3>() += reckoned;
+  for (const Vector6& error_W : systematic) sum += error_W * error_W.transpose();
   return sum;
 }
 
@@ -25,6 +28,10 @@ Matrix6 relative_covariance(const PoseDoubt& a, const PoseDoubt& b, const Vector
   Matrix6 sum = b.drift - carried(a.drift, displacement_W) + b.match + carried(a.match, displacement_W);
   // What was reckoned before a is common to both.
   sum.bottomRightCorner<3, 3>() += positive_part(b.reckoned - a.reckoned);
+  for (std::size_t i = 0; i < a.systematic.size(); ++i) {
+    const Vector6 between_W = b.systematic[i] - carried(a.systematic[i], displacement_W);
+    sum += between_W * between_W.transpose();
+  }
   return sum;
 }
 
@@ -34,18 +41,28 @@ Matrix6 carried(const Matrix6& covariance_W, const Vector3d& displacement_W) {
   return F * covariance_W * F.transpose();
 }
 
+Vector6 carried(const Vector6& error_W, const Vector3d& displacement_W) {
+  Vector6 there_W = error_W;
+  there_W.tail<3>() += error_W.head<3>().cross(displacement_W);
+  return there_W;
+}
+
 Matrix6 pose_covariance_W(const Estimate& estimate) {
   Matrix6 to_W = Matrix6::Identity();
   to_W.topLeftCorner<3, 3>() = estimate.mean.R_W_I.rotation();
   return to_W * estimate.covariance.topLeftCorner<6, 6>() * to_W.transpose();
 }
 
-void MapDrift::move_to(const Vector3d& p_W) {
-  doubt_.drift = carried(doubt_.drift, p_W - p_W_);
-  const double way_m = (p_W - p_W_).norm();
+void MapDrift::move_to(const SE3& T_W_I) {
+  const Vector3d displacement_W = T_W_I.translation() - T_W_I_.translation();
+  doubt_.drift = carried(doubt_.drift, displacement_W);
+  for (Vector6& error_W : doubt_.systematic) error_W = carried(error_W, displacement_W);
+  doubt_.systematic[0].tail<3>() += config_.scale_share * displacement_W;
+  turned_rad_ += log_so3(T_W_I.asSO3() * T_W_I_.asSO3().inverse()).z();
+  const double way_m = displacement_W.norm();
   doubt_.drift.diagonal().head<3>().array() += config_.turn_rad * config_.turn_rad * way_m;
   doubt_.drift.diagonal().tail<3>().array() += config_.shift_m * config_.shift_m * way_m;
-  p_W_ = p_W;
+  T_W_I_ = T_W_I;
 }
 
 void MapDrift::place(const Estimate& posterior, const Eigen::Matrix3Xd& unobserved, bool image_holds) {
@@ -64,7 +81,12 @@ void MapDrift::place(const Estimate& posterior, const Eigen::Matrix3Xd& unobserv
   not_inherited_ = along + positive_part(placed * not_inherited_ * placed - inherited);
 }
 
-void MapDrift::add_scan(double new_share) { doubt_.drift += config_.gain * new_share * new_share * doubt_.match; }
+void MapDrift::add_scan(double new_share) {
+  doubt_.drift += config_.gain * new_share * doubt_.match;
+  const double into_the_new_rad = 2.0 * std::numbers::pi * new_share;  // where all is known a turn shows rightly
+  doubt_.systematic[1].z() += config_.turn_share * std::clamp(turned_rad_, -into_the_new_rad, into_the_new_rad);
+  turned_rad_ = 0.0;
+}
 
 void MapDrift::restart(const Estimate& estimate) {
   doubt_.drift += pose_covariance_W(estimate);

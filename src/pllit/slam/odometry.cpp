@@ -129,7 +129,7 @@ Expected<FrameEstimate> Odometry::step(const SensorPacket& packet) {
     vision_->learn(arena_);
   }
   facts.image.holds = to_seconds(packet.end - last_held_) < config_.health.silent_degraded_s;
-  drift_.move_to(estimate_.mean.p_W);
+  drift_.move_to(estimate_.mean.T_W_I());
   drift_.place(estimate_, unobserved_shifts(unobserved_), facts.image.holds);
   if (packet.scan) {
     extend_map(dense, T_W_scan, facts);
