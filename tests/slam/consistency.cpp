@@ -88,12 +88,14 @@ TEST(Consistency, WithAKnownMapTheNeesOfThePoseIsChiSquared) {
 }
 
 TEST(Consistency, WithItsOwnMapRelativePosesOverTenMetresAreAsGoodAsClaimed) {
+  Config config;
+  config.drift.scale_share = config.drift.turn_share = 0.0;  // these LiDARs have no faults of their own
   for (const std::string scene : {"room", "street"}) {
     Vector6 squares = Vector6::Zero(), claimed = Vector6::Zero();
     int count = 0;
     for (int seed = 501; seed <= 512; ++seed) {
       const auto run =
-          test::run_simulation("sim:box_" + scene + "?duration=30&lidar=ring16&seed=" + std::to_string(seed));
+          test::run_simulation("sim:box_" + scene + "?duration=30&lidar=ring16&seed=" + std::to_string(seed), config);
       ASSERT_TRUE(run.result) << run.result.error().message;
       std::vector<double> distance_m{0.0};
       for (std::size_t i = 1; i < run.frames.size(); ++i)
