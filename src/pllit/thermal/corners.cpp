@@ -71,7 +71,7 @@ std::vector<Corner> thinned(const std::vector<Corner>& corners, float radius, st
 }
 
 cv::Mat contrast_normalised(const cv::Mat& grey, const CornerConfig& config) {
-  cv::Mat image, mean, squares, spread;
+  cv::Mat image, mean, squares;
   grey.convertTo(image, CV_32F);
   cv::GaussianBlur(image, image, {}, config.blur_px);
   const auto floor = static_cast<float>(config.noise_floors * noise_grey(grey));
